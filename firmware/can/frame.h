@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace armada {
+
+/// One CAN frame, classic or FD, as it is on the wire plus the time it was received.
+struct CanFrame {
+  uint32_t id = 0;        ///< 11 bits, or 29 when `extended`
+  bool extended = false;  ///< 29-bit identifier
+  bool remote = false;    ///< remote transmission request: asks for the frame with this id, carries no data
+  bool error = false;     ///< error frame of the controller, not of a node
+  bool fd = false;        ///< CAN FD
+  bool bitrate_switch = false;
+  bool error_state_indicator = false;
+  uint8_t length = 0;  ///< bytes used in `data`; for a remote frame, the length asked for
+  std::array<uint8_t, 64> data{};
+  int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC at reception; 0 for a frame not received from a bus
+};
+
+}  // namespace armada
