@@ -1,0 +1,70 @@
+#pragma once
+
+#include "firmware/core/adaptation.h"
+#include "firmware/core/disturbance_observer.h"
+#include "firmware/core/gains.h"
+#include "firmware/core/governor.h"
+#include "firmware/core/implicit_control.h"
+#include "firmware/core/projection.h"
+#include "firmware/core/pseudoinverse.h"
+#include "firmware/core/reference.h"
+#include "firmware/core/subtask.h"
+
+namespace armada {
+
+enum class LawKind {
+  kPaper,   ///< (1.2), (1.5), (1.6), (1.8) as printed, explicit Euler
+  kRobust,  ///< the same law made to work on a sampled, saturated arm
+};
+
+struct PaperLawConfig {
+  double alpha_1_s = 3.0;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"alpha_1_s", "1/s", 1e-3, 1e3, "alpha of (1.5) and (1.6) in the law as printed"}, alpha_1_s);
+  }
+};
+
+/// Everything that tunes the local law of one arm.
+struct ControlConfig {
+  LawKind law = LawKind::kRobust;
+  GainsConfig gains;
+  PaperLawConfig paper;
+  ReferenceConfig reference;
+  PseudoinverseConfig pseudoinverse;
+  GovernorConfig governor;
+  AdaptationConfig adaptation;
+  ProjectionConfig projection;
+  DisturbanceObserverConfig disturbance_observer;
+  ImplicitControlConfig implicit_control;
+  SubtaskConfig subtask;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"law", "", 0, 0, "local law: paper (as printed), robust"}, law);
+    parameter.Table("gains", gains);
+    parameter.Table("paper", paper);
+    parameter.Table("reference", reference);
+    parameter.Table("pseudoinverse", pseudoinverse);
+    parameter.Table("governor", governor);
+    parameter.Table("adaptation", adaptation);
+    parameter.Table("projection", projection);
+    parameter.Table("disturbance_observer", disturbance_observer);
+    parameter.Table("implicit_control", implicit_control);
+    parameter.Table("subtask", subtask);
+  }
+};
+
+/// What a local law sees in one tick. q, dq and zeta are of the same instant, the sample's.
+struct LawInput {
+  JointVector q_rad;
+  JointVector dq_rad_s;
+  Zeta zeta;             ///< estimate at the sample
+  Zeta zeta_next;        ///< estimate one period later
+  bool synced = false;   ///< the estimate may be used for motion
+  double elapsed_s = 0;  ///< since the previous sample
+  double period_s = 0;   ///< h
+};
+
+}  // namespace armada

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+
+#include "firmware/core/zeta.h"
+
+namespace armada {
+
+enum class EstimatorKind {
+  kPaper,       ///< explicit Euler of (1.9), as printed
+  kImplicit,    ///< implicit Euler: the set-valued sgn solved exactly, no chatter
+  kPredictive,  ///< implicit, around the prediction of the states to the end of the tick: third order in x
+};
+
+struct EstimatorConfig {
+  EstimatorKind kind = EstimatorKind::kPredictive;
+  double beta_1_m_s = 4.0;    ///< above sup |v_0| (A2)
+  double beta_2_m_s2 = 7.0;   ///< above sup |a_0|
+  double beta_3_m_s3 = 21.0;  ///< above sup |da_0/dt|
+  int sync_ticks = 2;
+  int desync_ticks = 20;
+  bool leaderless = false;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"kind", "", 0, 0, "estimator (1.9): paper (explicit Euler), implicit, predictive"}, kind);
+    parameter({"beta_1_m_s", "m/s", 1e-6, 1e3, "beta_1 of (1.9), above the leader's speed per axis"}, beta_1_m_s);
+    parameter({"beta_2_m_s2", "m/s^2", 1e-6, 1e4, "beta_2 of (1.9), above the leader's acceleration per axis"},
+              beta_2_m_s2);
+    parameter({"beta_3_m_s3", "m/s^3", 1e-6, 1e5, "beta_3 of (1.9), above the leader's jerk per axis"}, beta_3_m_s3);
+    parameter({"sync_ticks", "ticks", 1, 1000,
+               "ticks of agreement, here and upstream, after which the estimate is used for motion"},
+              sync_ticks);
+    parameter({"desync_ticks", "ticks", 1, 10000, "consecutive ticks out of the band after which it no longer is"},
+              desync_ticks);
+    parameter({"leaderless", "", 0, 1,
+               "Corollary 2: no leader; the arms agree on a point (v = a = 0) and meet there"},
+              leaderless);
+  }
+};
+
+/// What a node last heard from one node that it listens to; the leader is one of them.
+struct Neighbour {
+  double weight = 0.0;  ///< eps_ij, or b_i for the leader; 0: not used now
+  Zeta zeta;            ///< its state, as sent
+  double age_s = 0.0;   ///< now minus the time at which the state was valid
+  int agreement = 0;    ///< its agreement count; the leader's is kMaxAgreement
+  bool heard = false;   ///< false until a first message has come
+};
+
+struct Neighbours {
+  std::array<Neighbour, kMaxNeighbours> list;
+  int count = 0;
+};
+
+/// The networked algorithm (1.9) of one arm in discrete time. Per component c with m = sum_j w_j z_j / sum_j w_j:
+///   paper       zeta+ = zeta - h beta_c sgn(sum_j w_j (zeta - z_j))
+///   implicit    zeta+ = m + sgn(f - m) max(0, |f - m| - h beta_c), f = zeta
+///   predictive  the same with f = Taylor(zeta, h) and z_j predicted to the end of the tick.
+/// (Acary, Brogliato, Orlov, IEEE TAC 2012, for the implicit sgn.)
+class Estimator {
+ public:
+  static constexpr int kMaxAgreement = 30000;
+
+  Estimator(const EstimatorConfig& config, const Zeta& initial);
+
+  /// One tick of `h_s`: from the state at t_k to the state at t_k + h.
+  void Update(const Neighbours& neighbours, double h_s);
+
+  /// Missed ticks: the own prediction `ahead_s` on, without neighbours.
+  void Coast(double ahead_s);
+
+  /// The estimate at the time of the last Update's end.
+  const Zeta& zeta() const { return zeta_; }
+  /// Every component was within its band of the neighbours' mean in the last tick.
+  bool in_band() const { return in_band_; }
+  /// Number of ticks for which this node, and every node up to that many hops upstream, was in its band.
+  int agreement() const { return agreement_; }
+  /// The estimate may be used for motion. Latched, until out of the band for `desync_ticks`.
+  bool synced() const { return synced_; }
+
+ private:
+  void UpdateAgreement(const Neighbours& neighbours);
+
+  EstimatorConfig config_;
+  Zeta zeta_;
+  bool in_band_ = false;
+  int agreement_ = 0;
+  int ticks_out_of_band_ = 0;
+  bool synced_ = false;
+};
+
+}  // namespace armada
