@@ -31,9 +31,12 @@ class CanBus {
   CanBus& operator=(const CanBus&) = delete;
   virtual ~CanBus() = default;
 
+  /// Sends one frame, now or never. A frame that is not IsValid() is a fault of the caller: it is not sent,
+  /// counted as malformed, and answered with kQueueFull, since like one it is dropped.
   virtual BusStatus Send(const CanFrame& frame) = 0;
 
-  /// Waits for the next frame of another node until `deadline_ns` (CLOCK_MONOTONIC); a deadline in the past polls.
+  /// Waits for the next frame of another node until `deadline_ns` (CLOCK_MONOTONIC); a deadline in the past
+  /// polls. Error frames are counted and handed over like any other. `frame` is written only with kOk.
   virtual BusStatus Receive(int64_t deadline_ns, CanFrame* frame) = 0;
 
   /// Descriptor to poll for input.

@@ -19,4 +19,17 @@ struct CanFrame {
   int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC at reception; 0 for a frame not received from a bus
 };
 
+/// True for a frame that a CAN bus can carry: identifier in range, a length that its kind has, flags that go
+/// together.
+constexpr bool IsValid(const CanFrame& frame) {
+  if (frame.id > (frame.extended ? 0x1FFF'FFFFu : 0x7FFu)) return false;
+  if (!frame.fd) {
+    return frame.length <= 8 && !frame.bitrate_switch && !frame.error_state_indicator &&
+           !(frame.remote && frame.error);
+  }
+  if (frame.remote) return false;
+  const int length = frame.length;  // the 16 lengths of CAN FD
+  return length <= 8 || (length <= 24 && length % 4 == 0) || length == 32 || length == 48 || length == 64;
+}
+
 }  // namespace armada

@@ -8,10 +8,10 @@
 namespace armada {
 
 /// Frames that a codec wants sent, in order, without a heap. Sized for one arm's busiest tick:
-/// 7 joints times 4 bring-up frames.
+/// 7 joints times 4 bring-up frames, one sample request and one torque.
 class FrameList {
  public:
-  static constexpr size_t kCapacity = 32;
+  static constexpr size_t kCapacity = 48;
 
   /// Appends a frame; false when the list is full (the frame is not taken).
   bool Push(const CanFrame& frame) {

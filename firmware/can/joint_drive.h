@@ -18,18 +18,19 @@ struct JointDriveConfig {
   void Visit(Visitor& parameter) {
     parameter({"node_id", "", 0, 63, "address of the drive on the arm's bus"}, node_id);
     parameter({"gear_ratio", "", 1e-3, 1e4, "motor turns per joint turn"}, gear_ratio);
-    parameter({"direction", "", -1, 1, "+1 or -1, sign of motor motion for positive joint motion"}, direction);
+    parameter({"direction", "", -1, 1, "+1 or -1, sign of motor motion for positive joint motion"},
+              direction);
     parameter({"offset_rad", "rad", -1e3, 1e3, "joint angle at the drive's zero"}, offset_rad);
     parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque at the joint"}, torque_limit_Nm);
   }
 };
 
 enum class DriveState {
-  kUnknown,    ///< never heard of
-  kIdle,       ///< alive, produces no torque
-  kEnabling,   ///< bring-up frames sent, not yet confirmed
-  kTorque,     ///< closed loop, follows torque commands
-  kFault,      ///< the drive reports an error; it produces no torque
+  kUnknown,   ///< never heard of
+  kIdle,      ///< alive, not enabled by us; an error from before the bring-up shows in error_code() only
+  kEnabling,  ///< bring-up frames sent, not yet confirmed
+  kTorque,    ///< closed loop, follows torque commands
+  kFault,     ///< enabled by us, the drive reports an error; it produces no torque
 };
 
 /// One sample of a joint, at the time of its frame.
@@ -46,8 +47,10 @@ class JointDrive {
  public:
   virtual ~JointDrive() = default;
 
-  /// Appends the frames of the next step of the bring-up (clear errors, torque mode, closed loop). Call once a tick
-  /// until `state() == kTorque`. Does nothing once there, and nothing in kFault.
+  /// Appends the frames of the next step of the bring-up (clear errors, torque mode, zero torque, closed
+  /// loop). Call once a tick until `state() == kTorque`. Does nothing once there, nothing in kFault, and
+  /// nothing ever again on a drive that was there and left it, or was disabled: a drive does not re-arm by
+  /// itself.
   virtual void Enable(FrameList* out) = 0;
 
   /// Asks for a fresh sample of position and velocity.

@@ -18,6 +18,7 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
       law_(MakeLaw(config, arm_, initial.theta_hat)),
       gate_(config.torque_limit_Nm) {
   status_.x_m = TaskVector::Zero(PlanarArm::kTaskDim);
+  status_.zeta = initial.zeta;
   status_.tau_Nm = JointVector::Zero(arm_.dof());
 }
 
@@ -59,6 +60,7 @@ void ArmController::Observe(const ArmInput& in, const Zeta& zeta) {
   const JacobianMatrix J = arm_.Jacobian(at);
   const Pseudoinverse inverse = DampedPseudoinverse(config_.control.pseudoinverse, J);
   status_.x_m = arm_.Position(at);
+  status_.zeta = zeta;
   status_.error_m = (status_.x_m - zeta.x_m).norm();
   status_.sigma_min = inverse.sigma_min;
   status_.manipulability = inverse.determinant_JJt;

@@ -52,6 +52,15 @@ struct ArmInput {
 
 enum class ControllerState : int { kInit = 0, kRun = 1, kFault = 2 };
 
+constexpr const char* NameOf(ControllerState state) {
+  switch (state) {
+    case ControllerState::kInit: return "INIT";
+    case ControllerState::kRun: return "RUN";
+    case ControllerState::kFault: break;
+  }
+  return "FAULT";
+}
+
 /// What a tick leaves for people and for the record.
 struct ArmStatus {
   ControllerState state = ControllerState::kInit;
@@ -61,6 +70,7 @@ struct ArmStatus {
   double sigma_min = 0.0;            ///< m/rad
   double manipulability = 0.0;       ///< det(J J')
   JointVector tau_Nm;                ///< sent
+  Zeta zeta;                         ///< estimate used, at the sample
 };
 
 /// The controller of one arm: one Step a period, the same in simulation and on a board. Fixed memory.

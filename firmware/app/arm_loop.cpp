@@ -1,0 +1,127 @@
+#include "firmware/app/arm_loop.h"
+
+#include <algorithm>
+
+#include "firmware/app/heap_counter.h"
+#include "firmware/app/realtime.h"
+
+namespace armada {
+namespace {
+
+int64_t Nanoseconds(double seconds) { return static_cast<int64_t>(seconds * 1e9 + 0.5); }
+
+int32_t Microseconds(int64_t duration_ns) { return static_cast<int32_t>(duration_ns / 1000); }
+
+}  // namespace
+
+ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns)
+    : node_(node),
+      bus_(bus),
+      link_(link),
+      period_ns_(Nanoseconds(timing.period_s)),
+      feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
+      epoch_ns_(epoch_ns),
+      estimate_channel_(EstimateChannel(node->id())),
+      telemetry_channel_(TelemetryChannel(node->id())) {}
+
+bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
+  bool ready = false;
+  const int64_t periods_ahead = std::max<int64_t>(0, (epoch_ns_ - MonotonicNow()) / period_ns_);
+  for (int64_t tick_ns = epoch_ns_ - periods_ahead * period_ns_; tick_ns < epoch_ns_; tick_ns += period_ns_) {
+    SleepUntil(tick_ns);
+    if (*stop != 0) return false;
+    TakeWaitingFrames();
+    out_.Clear();
+    ready = node_->BringUp(&out_);
+    Send();
+  }
+  return ready;
+}
+
+void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
+  int64_t tick_ns = epoch_ns_;
+  SleepUntil(tick_ns);
+  heap_at_start_ = static_cast<int64_t>(HeapCounter::Allocations());
+  faults_at_start_ = PageFaults();
+  while (tick_ns < end_ns) {
+    SleepUntil(tick_ns);
+    if (*stop != 0) break;
+    const int64_t now_ns = MonotonicNow();
+    if (const int64_t late_periods = (now_ns - tick_ns) / period_ns_; late_periods > 0) {
+      report_.missed_ticks += late_periods;  // gone; the newest one is done, not all of them
+      tick_ns += late_periods * period_ns_;
+    }
+    Tick(tick_ns, now_ns);
+    tick_ns += period_ns_;
+  }
+  final_state_ = node_->state();
+  out_.Clear();
+  node_->Stop(&out_);
+  Send();
+}
+
+void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
+  link_->Publish(estimate_channel_, node_->EncodeEstimate(tick_ns, &buffer_));
+  TakeWaitingFrames();
+  out_.Clear();
+  const int64_t request_ns = MonotonicNow();
+  node_->RequestSamples(request_ns, &out_);
+  Send();
+  const int64_t feedback_ns = AwaitSamples(tick_ns + feedback_timeout_ns_);
+  if (!node_->SamplesComplete()) ++report_.incomplete_samples;
+  link_->Drain([&](const LcmMessage& message) { node_->OnMessage(message); });
+
+  out_.Clear();
+  node_->Step(tick_ns, &out_);
+  Send();
+  const int64_t sent_ns = MonotonicNow();
+
+  ++report_.ticks;
+  report_.wakeup_lateness.Add(woken_ns - tick_ns);
+  report_.compute.Add(sent_ns - feedback_ns);
+  report_.sample_to_torque.Add(sent_ns - request_ns);
+  report_.heap_allocations = static_cast<int64_t>(HeapCounter::Allocations()) - heap_at_start_;
+  report_.page_faults = PageFaults() - faults_at_start_;
+  telemetry_.wakeup_lateness_us = Microseconds(woken_ns - tick_ns);
+  telemetry_.compute_us = Microseconds(sent_ns - feedback_ns);
+  telemetry_.sample_to_torque_us = Microseconds(sent_ns - request_ns);
+  PublishTelemetry(tick_ns);
+}
+
+void ArmLoop::Send() {
+  // A frame that the bus does not take is dropped and counted there: an old torque is never sent late.
+  for (const CanFrame& frame : out_) bus_->Send(frame);
+}
+
+int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
+  CanFrame frame;
+  int64_t last_ns = MonotonicNow();
+  while (!node_->SamplesComplete() && bus_->Receive(deadline_ns, &frame) == BusStatus::kOk) {
+    node_->OnFrame(frame);
+    last_ns = MonotonicNow();
+  }
+  return last_ns;
+}
+
+void ArmLoop::TakeWaitingFrames() {
+  constexpr int kMostPerTick = 256;  // bounds the work a babbling bus can cause
+  CanFrame frame;
+  for (int i = 0; i < kMostPerTick && bus_->Receive(0, &frame) == BusStatus::kOk; ++i) node_->OnFrame(frame);
+}
+
+void ArmLoop::PublishTelemetry(int64_t tick_ns) {
+  node_->FillTelemetry(tick_ns, &telemetry_);
+  telemetry_.missed_ticks = static_cast<int32_t>(report_.missed_ticks);
+  telemetry_.heap_allocations = report_.heap_allocations;
+  telemetry_.page_faults = report_.page_faults;
+  const BusCounters& can = bus_->counters();
+  telemetry_.can_sent = static_cast<int64_t>(can.sent);
+  telemetry_.can_received = static_cast<int64_t>(can.received);
+  telemetry_.can_dropped = static_cast<int64_t>(can.dropped_queue_full);
+  const LcmCounters& lcm = link_->counters();
+  telemetry_.lcm_received = static_cast<int64_t>(lcm.received);
+  telemetry_.lcm_rejected = node_->rejected_messages() + static_cast<int64_t>(lcm.malformed);
+  link_->Publish(telemetry_channel_, Encode(telemetry_, &buffer_));
+}
+
+}  // namespace armada

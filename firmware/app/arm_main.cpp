@@ -1,0 +1,119 @@
+// armada-arm: the controller process of one arm.
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <memory>
+
+#include "firmware/app/arm_loop.h"
+#include "firmware/app/config/fleet_file.h"
+#include "firmware/app/exit_codes.h"
+#include "firmware/app/heap_counter.h"
+#include "firmware/app/initial_state.h"
+#include "firmware/app/loop_report.h"
+#include "firmware/app/realtime.h"
+#include "firmware/can/open_bus.h"
+
+namespace armada {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void RequestStop(int) { stop_requested = 1; }
+
+void StopOnSignals() {
+  struct sigaction action {};
+  action.sa_handler = RequestStop;  // no SA_RESTART: sleeps end
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+struct Options {
+  std::string fleet;
+  int arm_id = 0;
+  int64_t epoch_ns = 0;
+  double seconds = 0.0;
+  std::string initial;
+  std::string json;
+  int priority = 80;
+};
+
+int Fail(const Options& options, const std::string& message) {
+  std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, message.c_str());
+  return kExitFailed;
+}
+
+int Run(const Options& options) {
+  std::vector<ConfigError> errors;
+  const auto fleet = LoadFleet(options.fleet, {}, &errors);
+  if (!fleet) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+  const int index = fleet->IndexOf(options.arm_id);
+  if (index < 0) {
+    std::fprintf(stderr, "armada-arm: --arm %d: %s has no such arm\n", options.arm_id, options.fleet.c_str());
+    return kExitUsage;
+  }
+  const ArmEntry& entry = fleet->arms[static_cast<size_t>(index)];
+  const auto initial = options.initial.empty() ? NominalInitialState(entry) : LoadInitialState(options.initial, entry, &errors);
+  if (!initial) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+
+  std::string error;
+  const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
+  const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
+  if (!link) return Fail(options, error);
+  const auto bus = OpenBus(entry.bus, &error);
+  if (!bus) return Fail(options, error);
+
+  const RealtimeGrant grant = EnterRealtime(options.priority);
+  if (!grant.complaint.empty()) std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, grant.complaint.c_str());
+  StopOnSignals();
+
+  constexpr int64_t kBringUpNs = 1'000'000'000;
+  const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : MonotonicNow() + kBringUpNs;
+  const int64_t end_ns = options.seconds > 0.0 ? epoch_ns + static_cast<int64_t>(options.seconds * 1e9)
+                                               : std::numeric_limits<int64_t>::max();
+  const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns);
+  const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), fleet->timing, epoch_ns);
+  if (!loop->BringUp(&stop_requested)) {
+    return Fail(options, stop_requested != 0 ? "stopped before the start"
+                                             : "not every drive on " + entry.bus + " reached torque mode before the start");
+  }
+  loop->Run(end_ns, &stop_requested);
+
+  if (!options.json.empty()) {
+    std::ofstream file(options.json);
+    WriteLoopReport(*loop, *node, *bus, *link, grant, file);
+    if (!file.flush()) return Fail(options, "cannot write " + options.json);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace armada
+
+int main(int argc, char** argv) {
+  armada::Options options;
+  CLI::App app("Controller of one arm of a fleet: 100 Hz, fixed memory. HAZARD: it moves the arm as soon as it starts.",
+               "armada-arm");
+  app.add_option("FLEET", options.fleet, "fleet file (TOML)")->required();
+  app.add_option("--arm", options.arm_id, "id of this board's arm")->required();
+  app.add_option("--epoch-ns", options.epoch_ns, "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now");
+  app.add_option("--seconds", options.seconds, "length of the run; default: until SIGINT or SIGTERM");
+  app.add_option("--initial", options.initial, "file with zeta(0) and theta_hat(0); default: nominal");
+  app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")->check(CLI::Range(0, 99));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
+  }
+  return armada::Run(options);
+}

@@ -1,0 +1,245 @@
+#include "firmware/app/arm_node.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "firmware/can/odrive_cansimple.h"
+#include "firmware/link/channels.h"
+
+namespace armada {
+namespace {
+
+constexpr int kLeader = 0;
+
+double Seconds(int64_t duration_ns) { return 1e-9 * static_cast<double>(duration_ns); }
+
+void Copy(const TaskVector& from, double (&to)[3]) { std::copy(from.data(), from.data() + from.size(), to); }
+
+TaskVector ToTask(const double (&from)[3]) {
+  TaskVector to(PlanarArm::kTaskDim);
+  std::copy(from, from + PlanarArm::kTaskDim, to.data());
+  return to;
+}
+
+std::unique_ptr<JointDrive> MakeDrive(DriveProfile profile, const JointDriveConfig& config) {
+  switch (profile) {
+    case DriveProfile::kODriveCanSimple: break;
+  }
+  return std::make_unique<ODriveCanSimple>(config);
+}
+
+}  // namespace
+
+ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns)
+    : id_(fleet.arms[index].id),
+      shared_clock_(fleet.link.shared_clock),
+      timing_(fleet.timing),
+      schedule_(fleet.Schedule()),
+      epoch_ns_(epoch_ns),
+      controller_(fleet.ControllerConfig(index), initial) {
+  for (const JointDriveConfig& joint : fleet.arms[index].joints) {
+    drives_.push_back(MakeDrive(fleet.arms[index].profile, joint));
+  }
+  for (size_t topology = 0; topology < fleet.topologies.size(); ++topology) {
+    for (const Pin& pin : fleet.topologies[topology].pins) {
+      if (pin.arm == id_) ListenTo(fleet, kLeader, topology, pin.weight);
+    }
+    for (const Edge& edge : fleet.topologies[topology].edges) {
+      if (edge.to == id_) ListenTo(fleet, edge.from, topology, edge.weight);
+    }
+  }
+  const auto dof = static_cast<Eigen::Index>(drives_.size());
+  input_.q_rad = JointVector::Zero(dof);
+  input_.dq_rad_s = JointVector::Zero(dof);
+  input_.neighbours.count = static_cast<int>(sources_.size());
+}
+
+void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight) {
+  auto source = std::find_if(sources_.begin(), sources_.end(), [&](const Source& s) { return s.arm_id == arm_id; });
+  if (source == sources_.end()) {
+    sources_.push_back({.arm_id = arm_id, .clock = ClockOffset(fleet.link.clock)});
+    source = sources_.end() - 1;
+  }
+  source->weight[topology] = weight;
+}
+
+bool ArmNode::BringUp(FrameList* out) {
+  for (const auto& drive : drives_) {
+    drive->Enable(out);
+    drive->RequestSample(out);  // keeps the drive's watchdog fed until torques do
+  }
+  return std::all_of(drives_.begin(), drives_.end(),
+                     [](const auto& drive) { return drive->state() == DriveState::kTorque; });
+}
+
+std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer* buffer) {
+  // The estimate was computed for the end of the previous tick; later, ticks were missed.
+  const Zeta& zeta = controller_.zeta();
+  const bool started = controller_.zeta_time_s() > 0.0;
+  estimate_t message{};
+  message.stamp_ns = started ? epoch_ns_ + static_cast<int64_t>(controller_.zeta_time_s() * 1e9 + 0.5) : tick_ns;
+  message.sequence = ++estimate_sequence_;
+  message.arm_id = static_cast<int8_t>(id_);
+  message.task_dim = PlanarArm::kTaskDim;
+  message.agreement = static_cast<int16_t>(controller_.estimator().agreement());
+  message.leader_age_s = leader_age_s_;
+  Copy(zeta.x_m, message.x_m);
+  Copy(zeta.v_m_s, message.v_m_s);
+  Copy(zeta.a_m_s2, message.a_m_s2);
+  return Encode(message, buffer);
+}
+
+void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
+  request_ns_ = now_ns;
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    sequence_at_request_[i] = drives_[i]->sample().sequence;
+    drives_[i]->RequestSample(out);
+  }
+}
+
+bool ArmNode::OnFrame(const CanFrame& frame) {
+  for (const auto& drive : drives_) {
+    if (drive->OnFrame(frame)) return true;
+  }
+  return false;
+}
+
+bool ArmNode::SamplesComplete() const {
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    if (drives_[i]->sample().sequence == sequence_at_request_[i]) return false;
+  }
+  return true;
+}
+
+template <class Message>
+bool ArmNode::Take(Source& source, const Message& message, int64_t arrival_ns) {
+  if (message.task_dim != PlanarArm::kTaskDim) return false;
+  if (source.clock.Update({message.sequence, message.stamp_ns, arrival_ns}) == Freshness::kStale) return false;
+  source.stamp_ns = message.stamp_ns;
+  source.neighbour.zeta = {ToTask(message.x_m), ToTask(message.v_m_s), ToTask(message.a_m_s2)};
+  source.neighbour.heard = true;
+  return true;
+}
+
+void ArmNode::OnMessage(const LcmMessage& message) {
+  for (Source& source : sources_) {
+    bool taken = false;
+    if (source.arm_id == kLeader) {
+      if (message.channel != kLeaderChannel) continue;
+      leader_t leader;
+      taken = Decode(message.payload, &leader) && Take(source, leader, message.arrival_ns);
+      if (taken) {
+        source.neighbour.agreement = Estimator::kMaxAgreement;
+        source.leader_age_s = 0.0f;
+      }
+    } else {
+      if (ParseArmChannel(kEstimatePrefix, message.channel) != source.arm_id) continue;
+      estimate_t estimate;
+      taken = Decode(message.payload, &estimate) && estimate.arm_id == source.arm_id &&
+              Take(source, estimate, message.arrival_ns);
+      if (taken) {
+        source.neighbour.agreement = estimate.agreement;
+        source.leader_age_s = estimate.leader_age_s;
+      }
+    }
+    if (!taken) ++rejected_messages_;
+    return;
+  }
+}
+
+double ArmNode::AgeOf(const Source& source, int64_t now_ns) const {
+  return shared_clock_ ? Seconds(now_ns - source.stamp_ns) : source.clock.AgeS(source.stamp_ns, now_ns);
+}
+
+void ArmNode::ReadNeighbours(int64_t tick_ns) {
+  const size_t topology = schedule_.At(Seconds(tick_ns - epoch_ns_));
+  float leader_age_s = std::numeric_limits<float>::infinity();
+  for (size_t i = 0; i < sources_.size(); ++i) {
+    Source& source = sources_[i];
+    source.neighbour.weight = source.weight[topology];
+    if (source.neighbour.heard) {
+      source.neighbour.age_s = AgeOf(source, tick_ns);
+      if (source.neighbour.weight > 0.0 && source.leader_age_s >= 0.0f) {
+        leader_age_s = std::min(leader_age_s, source.leader_age_s + static_cast<float>(source.neighbour.age_s));
+      }
+    }
+    input_.neighbours.list[i] = source.neighbour;
+  }
+  leader_age_s_ = leader_age_s < std::numeric_limits<float>::infinity() ? leader_age_s : -1.0f;
+}
+
+// Joint state at one instant from samples of slightly different ones, missing ones predicted. False when a sample is so
+// old that no torque may rest on it.
+bool ArmNode::ReadJoints(int64_t tick_ns) {
+  // A drive samples between the request and the answer's arrival.
+  int64_t sum_ns = 0;
+  int fresh = 0;
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    const JointSample& sample = drives_[i]->sample();
+    if (sample.sequence == sequence_at_request_[i]) continue;
+    sum_ns += (request_ns_ + sample.stamp_ns) / 2 - tick_ns;
+    ++fresh;
+  }
+  const int64_t sample_ns = tick_ns + (fresh > 0 ? sum_ns / fresh : 0);
+  input_.tick_s = Seconds(tick_ns - epoch_ns_);
+  input_.sample_s = Seconds(sample_ns - epoch_ns_);
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    const JointSample& sample = drives_[i]->sample();
+    const auto joint = static_cast<Eigen::Index>(i);
+    const bool is_fresh = sample.sequence != sequence_at_request_[i];
+    const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
+    if (sample.sequence == 0 || age_s > timing_.feedback_stale_s) return false;
+    input_.q_rad[joint] = sample.position_rad + age_s * sample.velocity_rad_s;
+    input_.dq_rad_s[joint] = sample.velocity_rad_s;
+  }
+  return true;
+}
+
+void ArmNode::Step(int64_t tick_ns, FrameList* out) {
+  if (state_ == ControllerState::kFault) return;
+  const bool drives_follow = std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) {
+    return drive->state() == DriveState::kTorque;
+  });
+  if (!drives_follow || !ReadJoints(tick_ns)) return Stop(out);
+
+  ReadNeighbours(tick_ns);
+  const JointVector tau_Nm = controller_.Step(input_);
+  state_ = controller_.status().state;
+  if (state_ == ControllerState::kFault) return Stop(out);
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i]->CommandTorque(tau_Nm[static_cast<Eigen::Index>(i)], out);
+  }
+}
+
+void ArmNode::Stop(FrameList* out) {
+  state_ = ControllerState::kFault;
+  for (const auto& drive : drives_) drive->Disable(out);
+}
+
+void ArmNode::FillTelemetry(int64_t tick_ns, telemetry_t* telemetry) {
+  const ArmStatus& status = controller_.status();
+  const ParameterVector& theta_hat = controller_.theta_hat();
+  const JointVector d_hat_Nm = controller_.d_hat_Nm();
+  telemetry->stamp_ns = tick_ns;
+  telemetry->sequence = ++telemetry_sequence_;
+  telemetry->arm_id = static_cast<int8_t>(id_);
+  telemetry->dof = static_cast<int8_t>(drives_.size());
+  telemetry->task_dim = PlanarArm::kTaskDim;
+  telemetry->parameter_count = static_cast<int8_t>(theta_hat.size());
+  telemetry->state = static_cast<int8_t>(state_);
+  telemetry->synced = static_cast<int8_t>(controller_.estimator().synced());
+  const auto copy = [](const auto& from, double* to) { std::copy(from.data(), from.data() + from.size(), to); };
+  copy(input_.q_rad, telemetry->q_rad);
+  copy(input_.dq_rad_s, telemetry->dq_rad_s);
+  copy(status.tau_Nm, telemetry->tau_Nm);
+  copy(status.x_m, telemetry->x_m);
+  copy(d_hat_Nm, telemetry->d_hat_Nm);
+  copy(theta_hat, telemetry->theta_hat);
+  telemetry->error_m = status.error_m;
+  telemetry->subtask_error_rad_s = status.subtask_error_rad_s;
+  telemetry->sigma_min = status.sigma_min;
+  telemetry->saturated_ticks = controller_.saturated_ticks();
+  telemetry->lcm_rejected = rejected_messages_;
+}
+
+}  // namespace armada

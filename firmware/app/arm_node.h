@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "firmware/app/fleet.h"
+#include "firmware/can/joint_drive.h"
+#include "firmware/core/arm_controller.h"
+#include "firmware/link/clock_offset.h"
+#include "firmware/link/lcm_endpoint.h"
+#include "firmware/link/messages.h"
+
+namespace armada {
+
+/// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages out. The process
+/// and the simulation run the same object. It allocates in the constructor only. Times are nanoseconds of the board's
+/// monotonic clock; the fleet's time 0 is `epoch_ns`.
+class ArmNode {
+ public:
+  ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns);
+
+  /// Before the first tick, once a period: brings the drives into torque mode. True once all are.
+  bool BringUp(FrameList* out);
+
+  /// Each tick, in this order:
+  /// 1. publish what neighbours use, the estimate valid at this tick;
+  std::span<const uint8_t> EncodeEstimate(int64_t tick_ns, MessageBuffer* buffer);
+  /// 2. ask the joints for samples, and take the answers until complete or out of time;
+  void RequestSamples(int64_t now_ns, FrameList* out);
+  bool OnFrame(const CanFrame& frame);
+  bool SamplesComplete() const;
+  /// 3. take what the neighbours sent;
+  void OnMessage(const LcmMessage& message);
+  /// 4. compute and send torques.
+  void Step(int64_t tick_ns, FrameList* out);
+
+  /// What the tick did, for people; the process adds its own timing.
+  void FillTelemetry(int64_t tick_ns, telemetry_t* telemetry);
+
+  /// Drives go to rest in their own way; the node is in kFault until it is started anew.
+  void Stop(FrameList* out);
+
+  ControllerState state() const { return state_; }
+  int id() const { return id_; }
+  const ArmController& controller() const { return controller_; }
+  /// Messages dropped: malformed, stale, or of another fleet's shape.
+  int64_t rejected_messages() const { return rejected_messages_; }
+
+ private:
+  /// A node this arm listens to, in any of the topologies.
+  struct Source {
+    int arm_id = 0;  ///< 0: the leader
+    ClockOffset clock;
+    int64_t stamp_ns = 0;
+    Neighbour neighbour{};
+    float leader_age_s = -1.0f;  ///< as sent
+    std::array<double, TopologySchedule::kMaxCount> weight{};  ///< by topology
+  };
+
+  void ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight);
+  template <class Message>
+  bool Take(Source& source, const Message& message, int64_t arrival_ns);
+  double AgeOf(const Source& source, int64_t now_ns) const;
+  void ReadNeighbours(int64_t tick_ns);
+  bool ReadJoints(int64_t tick_ns);
+
+  int id_;
+  bool shared_clock_;
+  TimingConfig timing_;
+  TopologySchedule schedule_;
+  int64_t epoch_ns_;
+  std::vector<std::unique_ptr<JointDrive>> drives_;
+  std::vector<Source> sources_;
+  ArmController controller_;
+  ControllerState state_ = ControllerState::kInit;
+  ArmInput input_;
+  int64_t request_ns_ = 0;
+  std::array<uint64_t, kMaxDof> sequence_at_request_{};
+  int64_t estimate_sequence_ = 0;
+  int64_t telemetry_sequence_ = 0;
+  int64_t rejected_messages_ = 0;
+  float leader_age_s_ = -1.0f;
+};
+
+}  // namespace armada

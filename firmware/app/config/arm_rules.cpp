@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/app/config/fleet_rules.h"
+#include "firmware/app/config/value_text.h"
+#include "firmware/can/bus_name.h"
+
+namespace armada {
+namespace {
+
+/// The rules of one arm. Each may assume that what it reads was read without an error.
+class ArmRules {
+ public:
+  ArmRules(const FleetLayout& fleet, const ArmLayout& arm, const ConfigCursor& root, const ConfigCursor& at,
+           std::vector<ConfigError>* errors)
+      : fleet_(fleet), arm_(arm), root_(root), at_(at), errors_(errors) {}
+
+  void CheckAll() {
+    if (IsClean(at_.At("bus"), *errors_)) CheckBus();
+    const bool links_good = CheckLinks();
+    if (!links_good) return;  // everything below counts or measures links
+    CheckJoints();
+    if (!IsClean(at_.At("control"), *errors_) || !IsClean(root_.At("control"), *errors_)) return;
+    CheckGains();
+    CheckLaw();
+    CheckSubtask();
+    const bool bounds_good = CheckProjectionBounds();
+    if (!IsClean(at_, *errors_)) return;
+    CheckReach();
+    if (bounds_good && arm_.control.law == LawKind::kRobust) CheckNominalParameters();
+  }
+
+ private:
+  int dof() const { return static_cast<int>(arm_.link.size()); }
+
+  /// A value of the local law: this arm's own, else the fleet's, else where the arm's own would stand.
+  ConfigCursor Control(const std::string& key) const {
+    const ConfigCursor own = at_.At("control." + key);
+    const ConfigCursor of_fleet = root_.At("control." + key);
+    return own.found() || !of_fleet.found() ? own : of_fleet;
+  }
+
+  void CheckBus() {
+    std::string error;
+    if (!ParseBusName(arm_.bus, &error)) Report(at_.At("bus"), error, errors_);
+  }
+
+  bool CheckLinks() {
+    const ConfigCursor links = at_.At("link");
+    if (!IsClean(links, *errors_)) return false;
+    if (arm_.link.empty() || arm_.link.size() > size_t{kMaxDof}) {
+      Report(links, "given " + std::to_string(arm_.link.size()) + " links, allowed are 1 to " + std::to_string(kMaxDof),
+             errors_);
+      return false;
+    }
+    for (size_t i = 0; i < arm_.link.size(); ++i) {
+      const LinkConfig& link = arm_.link[i];
+      if (link.r_m <= link.l_m) continue;
+      Report(links.Element(i).At("r_m"),
+             "given " + ValueText(link.r_m) + " m, allowed is above 0 up to the link's l_m = " + ValueText(link.l_m) +
+                 " m",
+             errors_);
+    }
+    return true;
+  }
+
+  void CheckJoints() {
+    const ConfigCursor joints = at_.At("joint");
+    if (!IsClean(joints, *errors_) || !IsClean(at_.At("torque_limit_Nm"), *errors_)) return;
+    const auto limits = arm_.torque_limit_Nm.size();
+    if (limits > 1 && limits != dof()) {
+      Report(at_.At("torque_limit_Nm"),
+             "given " + std::to_string(limits) + " values, allowed are 1 or one a joint, " + std::to_string(dof()),
+             errors_);
+      return;
+    }
+    if (joints.found() && arm_.joint.size() != arm_.link.size()) {
+      Report(joints,
+             "given " + std::to_string(arm_.joint.size()) + " joints, expected one a link, " + std::to_string(dof()),
+             errors_);
+      return;
+    }
+    for (size_t i = 0; i < arm_.joint.size(); ++i) CheckJoint(i, joints.Element(i));
+  }
+
+  void CheckJoint(size_t i, const ConfigCursor& at) {
+    const JointDriveConfig& joint = arm_.joint[i];
+    // With a [[arm.joint]] list the reader has said so already; without one the arm's limit is all there is.
+    if (joint.torque_limit_Nm <= 0.0 && IsClean(at_.At("torque_limit_Nm"), *errors_)) {
+      Report(at_.At("torque_limit_Nm"), "missing; it is the largest torque of a joint: one value, or one a joint", errors_);
+    }
+    if (std::abs(joint.direction) != 1.0) {
+      Report(at.At("direction"), "given " + ValueText(joint.direction) + ", allowed are 1 and -1", errors_);
+    }
+    for (size_t j = 0; j < i; ++j) {
+      if (arm_.joint[j].node_id != joint.node_id) continue;
+      Report(at.At("node_id"),
+             "given " + std::to_string(joint.node_id) + ", the node id of joint " + std::to_string(j + 1) +
+                 " on the same bus, too",
+             errors_);
+      break;
+    }
+  }
+
+  void CheckCount(const char* key, Eigen::Index count, int wanted, const char* of) {
+    if (count == 1 || count == wanted) return;
+    Report(Control(key),
+           "given " + std::to_string(count) + " values, allowed for arm " + std::to_string(arm_.id) + " are 1 or one " +
+               of + ", " + std::to_string(wanted),
+           errors_);
+  }
+
+  void CheckGains() {
+    const GainsConfig& gains = arm_.control.gains;
+    CheckCount("gains.K_s_Nms_rad", gains.K_s_Nms_rad.size(), dof(), "a joint");
+    CheckCount("gains.K_r_Nm", gains.K_r_Nm.size(), dof(), "a joint");
+    CheckCount("gains.K_x_Ns_m", gains.K_x_Ns_m.size(), PlanarArm::kTaskDim, "an axis");
+  }
+
+  void CheckLaw() {
+    if (arm_.control.law == LawKind::kPaper && dof() < PlanarArm::kTaskDim) {
+      Report(Control("law"),
+             "given \"paper\", which needs at least 2 joints; arm " + std::to_string(arm_.id) +
+                 " has 1: allowed is \"robust\"",
+             errors_);
+    }
+    const double alpha = arm_.control.reference.alpha_1_s;
+    if (arm_.control.law == LawKind::kRobust && IsClean(root_.At("timing"), *errors_) &&
+        alpha * fleet_.timing.period_s > 1.0) {
+      Report(Control("reference.alpha_1_s"),
+             "given " + ValueText(alpha) + " 1/s, allowed is at most 1 / timing.period_s = " +
+                 ValueText(1.0 / fleet_.timing.period_s) + " 1/s",
+             errors_);
+    }
+  }
+
+  void CheckSubtask() {
+    const SubtaskConfig& subtask = arm_.control.subtask;
+    if (subtask.kind == SubtaskKind::kNone) return;
+    if (dof() <= PlanarArm::kTaskDim) {
+      Report(Control("subtask.kind"),
+             "given " + ValueText(subtask.kind) + ", which needs more than 2 joints; arm " + std::to_string(arm_.id) +
+                 " has " + std::to_string(dof()) + ": allowed is \"none\"",
+             errors_);
+    } else if (subtask.joint > dof()) {
+      Report(Control("subtask.joint"),
+             "given " + std::to_string(subtask.joint) + ", allowed for arm " + std::to_string(arm_.id) + " is 1 to " +
+                 std::to_string(dof()),
+             errors_);
+    }
+  }
+
+  bool CheckProjectionBounds() {
+    const ProjectionConfig& set = arm_.control.projection;
+    const auto check = [&](const std::string& quantity, const char* unit, double min, double max) {
+      if (min < max) return true;
+      Report(Control("projection." + quantity + "_min_" + unit),
+             "given " + ValueText(min) + ", allowed is below projection." + quantity + "_max_" + unit + " = " +
+                 ValueText(max),
+             errors_);
+      return false;
+    };
+    const bool inertia_good = check("inertia", "kgm2", set.inertia_min_kgm2, set.inertia_max_kgm2);
+    const bool gravity_good = check("gravity", "kgm", set.gravity_min_kgm, set.gravity_max_kgm);
+    return inertia_good && gravity_good;
+  }
+
+  void CheckReach() {
+    const PlanarArm arm(PlanarArmOf(arm_));
+    const ReferenceConfig& reference = arm_.control.reference;
+    const double inner = arm.reach_min_m() + reference.reach_inner_margin_m;
+    const double outer = arm.reach_max_m() - reference.reach_outer_margin_m;
+    if (inner < outer) return;
+    Report(Control("reference.reach_inner_margin_m"),
+           "with both margins arm " + std::to_string(arm_.id) + " has no reach left: " + ValueText(inner) + " to " +
+               ValueText(outer) + " m; allowed is less together than " +
+               ValueText(arm.reach_max_m() - arm.reach_min_m()) + " m",
+           errors_);
+  }
+
+  /// theta_hat could never become true if the true parameters were outside the set that it is kept in.
+  void CheckNominalParameters() {
+    const PlanarArm arm(PlanarArmOf(arm_));
+    const ParameterVector theta = arm.Theta();
+    const ProjectionConfig& set = arm_.control.projection;
+    if (InProjectionSet(set, arm, theta)) return;
+    const int n = arm.dof();
+    for (int a = 0; a < n; ++a) {
+      const double D_aa = theta[arm.InertiaIndex(a, a)];
+      const std::string name = "D_" + std::to_string(a + 1) + std::to_string(a + 1);
+      if (D_aa < set.inertia_min_kgm2) ReportBound("inertia_min_kgm2", set.inertia_min_kgm2, name, D_aa, "most");
+      if (D_aa > set.inertia_max_kgm2) ReportBound("inertia_max_kgm2", set.inertia_max_kgm2, name, D_aa, "least");
+      for (int b = a + 1; b < n; ++b) {
+        const double D_ab = theta[arm.InertiaIndex(a, b)];
+        const double needed = (n - 1) * std::abs(D_ab) / std::sqrt(D_aa * theta[arm.InertiaIndex(b, b)]);
+        const std::string pair = "the coupling of links " + std::to_string(a + 1) + " and " + std::to_string(b + 1);
+        if (needed > set.correlation_max) {
+          ReportBound("correlation_max", set.correlation_max, pair, needed, "least");
+        }
+      }
+    }
+    for (int p = arm.InertiaParameterCount(); p < arm.parameter_count(); ++p) {
+      const std::string name = "G_" + std::to_string(p - arm.InertiaParameterCount() + 1);
+      if (theta[p] > set.gravity_max_kgm) ReportBound("gravity_max_kgm", set.gravity_max_kgm, name, theta[p], "least");
+      if (theta[p] < set.gravity_min_kgm) ReportBound("gravity_min_kgm", set.gravity_min_kgm, name, theta[p], "most");
+    }
+  }
+
+  void ReportBound(const std::string& bound, double given, const std::string& parameter, double needed,
+                   const char* direction) {
+    Report(Control("projection." + bound),
+           "given " + ValueText(given) + ", but the links of arm " + std::to_string(arm_.id) + " have " + parameter +
+               " = " + ValueText(needed) + ": allowed is at " + direction + " that",
+           errors_);
+  }
+
+  const FleetLayout& fleet_;
+  const ArmLayout& arm_;
+  const ConfigCursor root_;
+  const ConfigCursor at_;
+  std::vector<ConfigError>* errors_;
+};
+
+}  // namespace
+
+void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root, std::vector<ConfigError>* errors) {
+  ArmRules(fleet, fleet.arm[index], root, root.At("arm").Element(index), errors).CheckAll();
+}
+
+}  // namespace armada

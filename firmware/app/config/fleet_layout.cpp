@@ -1,0 +1,86 @@
+#include "firmware/app/config/fleet_layout.h"
+
+#include <algorithm>
+
+namespace armada {
+namespace {
+
+ArmEntry EntryOf(const ArmLayout& layout) {
+  ArmEntry entry;
+  entry.id = layout.id;
+  entry.arm = PlanarArmOf(layout);
+  entry.bus = layout.bus;
+  entry.profile = layout.drive;
+  entry.joints = layout.joint;
+  entry.control = layout.control;
+  entry.control.gains.Expand(entry.arm.dof, PlanarArm::kTaskDim);
+  return entry;
+}
+
+ArmLayout ArmLayoutOf(const ArmEntry& entry) {
+  ArmLayout layout;
+  layout.id = entry.id;
+  layout.bus = entry.bus;
+  layout.drive = entry.profile;
+  layout.torque_limit_Nm.resize(entry.arm.dof);
+  for (size_t i = 0; i < entry.joints.size(); ++i) {
+    layout.torque_limit_Nm[static_cast<Eigen::Index>(i)] = entry.joints[i].torque_limit_Nm;
+  }
+  layout.arm = entry.arm;
+  layout.link.assign(entry.arm.links.begin(), entry.arm.links.begin() + entry.arm.dof);
+  layout.joint = entry.joints;
+  layout.control = entry.control;
+  return layout;
+}
+
+}  // namespace
+
+JointDriveConfig ArmLayout::JointPrototype(size_t i) const {
+  JointDriveConfig prototype;
+  prototype.node_id = static_cast<int>(i) + 1;
+  const Eigen::Index known = torque_limit_Nm.size();
+  const auto own = known == 1 ? 0 : static_cast<Eigen::Index>(i);
+  if (own < known) prototype.torque_limit_Nm = torque_limit_Nm[own];
+  return prototype;
+}
+
+PlanarArmConfig PlanarArmOf(const ArmLayout& layout) {
+  PlanarArmConfig arm = layout.arm;
+  arm.dof = static_cast<int>(layout.link.size());
+  std::copy(layout.link.begin(), layout.link.end(), arm.links.begin());
+  return arm;
+}
+
+FleetConfig FleetOf(const FleetLayout& layout, const std::string& file) {
+  FleetConfig fleet;
+  fleet.name = layout.name;
+  fleet.file = file;
+  fleet.timing = layout.timing;
+  fleet.estimator = layout.estimator;
+  fleet.link = layout.link;
+  std::transform(layout.arm.begin(), layout.arm.end(), std::back_inserter(fleet.arms), EntryOf);
+  for (const GraphLayout& graph : layout.graph) {
+    fleet.topologies.push_back({{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}});
+  }
+  fleet.topology_period_s = layout.topology_period_s;
+  return fleet;
+}
+
+FleetLayout LayoutOf(const FleetConfig& fleet) {
+  FleetLayout layout;
+  layout.name = fleet.name;
+  layout.topology_period_s = fleet.topology_period_s;
+  layout.timing = fleet.timing;
+  layout.estimator = fleet.estimator;
+  layout.link = fleet.link;
+  layout.each_arm_has_all_control = true;
+  std::transform(fleet.arms.begin(), fleet.arms.end(), std::back_inserter(layout.arm), ArmLayoutOf);
+  for (const Topology& topology : fleet.topologies) {
+    GraphLayout& graph = layout.graph.emplace_back();
+    for (const Pin& pin : topology.pins) graph.pins.push_back({pin});
+    for (const Edge& edge : topology.edges) graph.edges.push_back({edge});
+  }
+  return layout;
+}
+
+}  // namespace armada

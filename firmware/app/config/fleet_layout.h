@@ -1,0 +1,107 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/app/fleet.h"
+#include "firmware/core/parameter.h"
+
+namespace armada {
+
+// The fleet file as it is written, table by table. FleetConfig is what it means: see FleetOf and LayoutOf.
+
+struct EdgeLayout : Edge {
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"from", "", 1, kMaxArms, "id of the arm that is listened to"}, from);
+    parameter({"to", "", 1, kMaxArms, "id of the arm that listens"}, to);
+    parameter({"weight", "", 0, 1e3, "eps_ij of (1.9); 0: not used"}, weight);
+  }
+};
+
+struct PinLayout : Pin {
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"arm", "", 1, kMaxArms, "id of an arm that hears the leader"}, arm);
+    parameter({"weight", "", 0, 1e3, "b_i of (1.9); 0: not used"}, weight);
+  }
+};
+
+struct GraphLayout {
+  std::vector<PinLayout> pins;
+  std::vector<EdgeLayout> edges;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter.List({"pins", "an arm that hears the leader; `pins = [1, 3]` is short for weights of 1"}, pins);
+    parameter.List({"edges", "one arm that listens to another"}, edges);
+  }
+};
+
+struct ArmLayout {
+  int id = 0;
+  std::string bus;
+  DriveProfile drive = DriveProfile::kODriveCanSimple;
+  JointVector torque_limit_Nm;
+  PlanarArmConfig arm;
+  std::vector<LinkConfig> link;
+  std::vector<JointDriveConfig> joint;
+  ControlConfig control;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"id", "", 1, kMaxArms, "number of the arm, unique in the fleet"}, id);
+    parameter({"bus", "", 0, 0, "arm's own CAN bus: udp:<group>:<port> or socketcan:<interface>"}, bus);
+    parameter({"drive", "", 0, 0, "profile that the arm's drives speak"}, drive);
+    parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque of a joint: one value, or one a joint"},
+              torque_limit_Nm);
+    arm.Visit(parameter);
+    parameter.List({"link", "a link, 1 to 7 from the base outwards"}, link);
+    parameter.List({"joint", "wiring of a joint, one a link; what is left out: node ids 1, 2, .. and the arm's torque limit"}, joint,
+                   [this](size_t i) { return JointPrototype(i); });
+    parameter.Table("control", control);
+  }
+
+  /// Joint i, from 0, where the file says nothing of it. A torque limit that is not known is 0, which is not legal.
+  JointDriveConfig JointPrototype(size_t i) const;
+};
+
+struct FleetLayout {
+  std::string name;
+  double topology_period_s = 0.0;
+  TimingConfig timing;
+  EstimatorConfig estimator;
+  LcmLinkConfig link;
+  ControlConfig control;
+  bool each_arm_has_all_control = false;  ///< in a written file: the fleet-wide table is left out
+  std::vector<ArmLayout> arm;
+  std::vector<GraphLayout> graph;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"name", "", 0, 0, "name of the fleet"}, name);
+    parameter({"topology_period_s", "s", 0, 1e6, "time for which each of several [[graph]] is used in turn"},
+              topology_period_s);
+    parameter.Table("timing", timing);
+    parameter.Table("estimator", estimator);
+    parameter.Table("link", link);
+    if (!each_arm_has_all_control) parameter.Table("control", control);
+    parameter.List({"arm", "an arm of the fleet, 1 to 64"}, arm, [this](size_t) {
+      ArmLayout prototype;
+      prototype.control = control;
+      return prototype;
+    });
+    parameter.List({"graph", "a topology, 1 to 16; several take turns"}, graph);
+  }
+};
+
+/// What a file that passed CheckFleet means.
+FleetConfig FleetOf(const FleetLayout& layout, const std::string& file);
+
+/// The file that means this.
+FleetLayout LayoutOf(const FleetConfig& fleet);
+
+/// The arm's geometry and masses. @pre at most kMaxDof links.
+PlanarArmConfig PlanarArmOf(const ArmLayout& layout);
+
+}  // namespace armada

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/can/joint_drive.h"
+#include "firmware/core/arm_controller.h"
+#include "firmware/core/graph.h"
+#include "firmware/link/clock_offset.h"
+
+namespace armada {
+
+enum class DriveProfile { kODriveCanSimple };
+
+struct LcmLinkConfig {
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  bool shared_clock = false;
+  ClockOffset::Config clock;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"lcm_url", "", 0, 0, "LCM multicast group, port and ttl: 0 on one machine, 1 between boards"}, lcm_url);
+    parameter({"shared_clock", "", 0, 1,
+               "all boards read one monotonic clock (one machine, or disciplined): ages need no estimate of offsets"},
+              shared_clock);
+    parameter.Table("clock", clock);
+  }
+};
+
+/// One arm of the fleet and its board.
+struct ArmEntry {
+  int id = 0;
+  PlanarArmConfig arm;
+  std::string bus;  ///< "udp:<group>:<port>" or "socketcan:<interface>"
+  DriveProfile profile = DriveProfile::kODriveCanSimple;
+  std::vector<JointDriveConfig> joints;  ///< one a joint, in order
+  ControlConfig control;                 ///< the fleet's, with this arm's own values on top; gains expanded
+};
+
+/// One topology: arms by id.
+struct Topology {
+  std::vector<Edge> edges;
+  std::vector<Pin> pins;
+};
+
+/// Which of the topologies is in use when: each in turn, for the same time.
+struct TopologySchedule {
+  static constexpr size_t kMaxCount = 16;
+
+  size_t count = 1;
+  double period_s = 0.0;  ///< 0 with a single topology
+
+  /// Index of the topology in use at time t since the fleet's start.
+  size_t At(double t_s) const;
+};
+
+/// What every board reads: arms, gains, graph, buses, timing, limits.
+struct FleetConfig {
+  std::string name;
+  std::string file;  ///< where it was read from
+  TimingConfig timing;
+  EstimatorConfig estimator;
+  LcmLinkConfig link;
+  std::vector<ArmEntry> arms;
+  std::vector<Topology> topologies;  ///< at least one; used in turn
+  double topology_period_s = 0.0;    ///< time each topology is used; 0 with a single one
+
+  /// Index in `arms` of an id, or -1.
+  int IndexOf(int id) const;
+  /// The digraph of one topology, nodes numbered by index in `arms`.
+  Digraph Graph(size_t topology) const;
+  TopologySchedule Schedule() const { return {topologies.size(), topology_period_s}; }
+  ArmControllerConfig ControllerConfig(size_t index) const;
+};
+
+}  // namespace armada

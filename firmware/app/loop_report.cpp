@@ -1,0 +1,56 @@
+#include "firmware/app/loop_report.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <ostream>
+
+#include "firmware/app/heap_counter.h"
+
+namespace armada {
+namespace {
+
+void Put(std::ostream& out, const char* name, const DurationHistogram& histogram) {
+  out << "    \"" << name << "_us\": {\"p50\": " << histogram.PercentileUs(0.5)
+      << ", \"p99\": " << histogram.PercentileUs(0.99) << ", \"p99.9\": " << histogram.PercentileUs(0.999)
+      << ", \"max\": " << histogram.max_us() << "},\n";
+}
+
+int64_t ResidentBytes() {
+  std::ifstream statm("/proc/self/statm");
+  int64_t total_pages = 0;
+  int64_t resident_pages = 0;
+  statm >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace
+
+void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus, const LcmEndpoint& link,
+                     const RealtimeGrant& grant, std::ostream& out) {
+  const LoopReport& report = loop.report();
+  out << "{\n  \"id\": " << node.id() << ",\n  \"state\": \"" << NameOf(loop.final_state()) << "\",\n  \"timing\": {\n";
+  Put(out, "wakeup_lateness", report.wakeup_lateness);
+  Put(out, "compute", report.compute);
+  Put(out, "sample_to_torque", report.sample_to_torque);
+  out << "    \"ticks\": " << report.ticks << ",\n    \"missed_ticks\": " << report.missed_ticks
+      << ",\n    \"incomplete_samples\": " << report.incomplete_samples
+      << ",\n    \"realtime_priority\": " << (grant.fifo ? "true" : "false") << "\n  },\n";
+  out << "  \"memory\": {\n    \"heap_allocations\": ";
+  if (HeapCounter::available()) {
+    out << report.heap_allocations;
+  } else {
+    out << "null";  // a build with sanitizers cannot count
+  }
+  out << ",\n    \"page_faults\": " << report.page_faults << ",\n    \"resident_bytes\": " << ResidentBytes()
+      << ",\n    \"locked\": " << (grant.memory_locked ? "true" : "false") << "\n  },\n";
+  const BusCounters& can = bus.counters();
+  const LcmCounters& lcm = link.counters();
+  out << "  \"bus\": {\n    \"can_sent\": " << can.sent << ",\n    \"can_received\": " << can.received
+      << ",\n    \"can_dropped\": " << can.dropped_queue_full << ",\n    \"can_malformed\": " << can.malformed
+      << ",\n    \"can_errors\": " << can.errors << ",\n    \"lcm_sent\": " << lcm.sent
+      << ",\n    \"lcm_received\": " << lcm.received << ",\n    \"lcm_rejected\": " << node.rejected_messages()
+      << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed << "\n  }\n}\n";
+}
+
+}  // namespace armada

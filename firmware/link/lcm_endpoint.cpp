@@ -1,0 +1,161 @@
+#include "firmware/link/lcm_endpoint.h"
+
+#include <arpa/inet.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "firmware/link/lcm_packet.h"
+
+namespace armada {
+namespace {
+
+// The kernel doubles this for its own bookkeeping and charges at least 768 bytes a datagram: 277 of the
+// smallest, which one Drain can empty; and nine ticks of seven arms' traffic, which a stalled loop can sleep
+// through.
+constexpr int kQueueBytes = 104 * 1024;
+
+int64_t ToNs(const timespec& time) {
+  return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+}
+
+int64_t ClockNs(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return ToNs(now);
+}
+
+template <class Value>
+bool SetOption(int socket, int level, int option, const Value& value) {
+  return setsockopt(socket, level, option, &value, sizeof(value)) == 0;
+}
+
+bool Join(int socket, const sockaddr_in& group) {
+  const ip_mreq membership{group.sin_addr, {htonl(INADDR_ANY)}};
+  return SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
+}
+
+// Bound to the group rather than to any address, the socket gets neither unicast nor what other groups send
+// to the port.
+bool Bind(int socket, const sockaddr_in& group) {
+  return SetOption(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
+         bind(socket, reinterpret_cast<const sockaddr*>(&group), sizeof(group)) == 0;
+}
+
+bool Configure(int socket, int ttl) {
+  return SetOption(socket, IPPROTO_IP, IP_MULTICAST_TTL, ttl) &&
+         SetOption(socket, IPPROTO_IP, IP_MULTICAST_LOOP, 1) &&
+         SetOption(socket, SOL_SOCKET, SO_RCVBUF, kQueueBytes) &&
+         SetOption(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && SetOption(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
+}
+
+}  // namespace
+
+std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, std::string* error) {
+  const auto fail = [&](const std::string& what) {
+    *error = "LCM " + ToString(url) + ": " + what;
+    return nullptr;
+  };
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(url.port);
+  if (inet_pton(AF_INET, url.group.c_str(), &group.sin_addr) != 1)
+    return fail("the group is no IPv4 address");
+
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (socket < 0) return fail(std::string("cannot open a socket: ") + std::strerror(errno));
+  std::unique_ptr<LcmEndpoint> endpoint(new LcmEndpoint(socket, group));
+
+  if (!Bind(socket, group)) return fail(std::string("cannot bind: ") + std::strerror(errno));
+  if (!Configure(socket, url.ttl))
+    return fail(std::string("cannot set up the socket: ") + std::strerror(errno));
+  if (!Join(socket, group)) {
+    const bool no_route = errno == ENODEV || errno == ENETUNREACH;
+    return fail(std::string("cannot join the group: ") + std::strerror(errno) +
+                (no_route
+                     ? "; this host has no route for multicast. Make one with `ip link set lo multicast on; "
+                       "ip route add 224.0.0.0/4 dev lo` as root, or start with `armada run`, which makes a "
+                       "private network"
+                     : ""));
+  }
+  return endpoint;
+}
+
+LcmEndpoint::LcmEndpoint(int socket, const sockaddr_in& group) : socket_(socket), group_(group) {
+  for (size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    slot.part = {slot.datagram.data(), slot.datagram.size()};
+    headers_[i].msg_hdr.msg_iov = &slot.part;
+    headers_[i].msg_hdr.msg_iovlen = 1;
+    headers_[i].msg_hdr.msg_control = slot.control.data();
+  }
+  CompareClocks();
+}
+
+LcmEndpoint::~LcmEndpoint() {
+  close(socket_);
+}
+
+bool LcmEndpoint::Publish(std::string_view channel, std::span<const uint8_t> payload) {
+  std::array<uint8_t, kMaxDatagram> datagram;
+  const size_t size = WriteLcmPacket(sequence_, {channel, payload}, datagram);
+  const bool sent = size > 0 && sendto(socket_, datagram.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL,
+                                       reinterpret_cast<const sockaddr*>(&group_),
+                                       sizeof(group_)) == static_cast<ssize_t>(size);
+  if (!sent) {
+    ++counters_.send_failures;
+    return false;
+  }
+  ++sequence_;
+  ++counters_.sent;
+  return true;
+}
+
+int LcmEndpoint::ReceiveBatch(int wanted) {
+  for (mmsghdr& header : headers_) header.msg_hdr.msg_controllen = sizeof(Slot::control);
+  const int got = recvmmsg(socket_, headers_.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
+  CompareClocks();
+  return std::max(got, 0);
+}
+
+void LcmEndpoint::CompareClocks() {
+  const int64_t wall_ns = ClockNs(CLOCK_REALTIME);
+  arrival_.Update(wall_ns, ClockNs(CLOCK_MONOTONIC));
+}
+
+std::optional<LcmMessage> LcmEndpoint::Read(int index) {
+  const auto slot = static_cast<size_t>(index);
+  msghdr& header = headers_[slot].msg_hdr;
+  const int64_t arrival_ns = ReadControl(&header);
+  if ((header.msg_flags & MSG_TRUNC) != 0) {
+    ++counters_.truncated;
+    return std::nullopt;
+  }
+  const auto packet = ParseLcmPacket(std::span(slots_[slot].datagram).first(headers_[slot].msg_len));
+  if (!packet) {
+    ++counters_.malformed;
+    return std::nullopt;
+  }
+  ++counters_.received;
+  return LcmMessage{packet->channel, packet->payload, arrival_ns};
+}
+
+int64_t LcmEndpoint::ReadControl(msghdr* header) {
+  int64_t arrival_ns = arrival_.now_ns();
+  for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
+    if (item->cmsg_level != SOL_SOCKET) continue;
+    if (item->cmsg_type == SCM_TIMESTAMPNS) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(item), sizeof(stamp));
+      arrival_ns = arrival_.ToMonotonic(ToNs(stamp));
+    } else if (item->cmsg_type == SO_RXQ_OVFL) {
+      uint32_t dropped = 0;
+      std::memcpy(&dropped, CMSG_DATA(item), sizeof(dropped));
+      counters_.overflowed = dropped;
+    }
+  }
+  return arrival_ns;
+}
+
+}  // namespace armada

@@ -1,0 +1,91 @@
+#include "hil/emulated_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hil/odrive_emulator.h"
+#include "hil/random.h"
+
+namespace armada {
+namespace {
+
+// Events closer together than this are one: below it, differences of times are rounding.
+constexpr double kSameInstant_s = 1e-9;
+
+}  // namespace
+
+EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
+                         const LeaderPath* leader, double start_s)
+    : config_(scenario.plant),
+      plant_(scenario.fleet.arms[index].arm),
+      disturbance_(scenario.disturbance, seed, scenario.fleet.arms[index].id),
+      leader_(leader),
+      start_speed_rad_s_(start.dq_rad_s),
+      start_s_(start_s) {
+  plant_.q_rad = start.q_rad;
+  const ArmEntry& entry = scenario.fleet.arms[index];
+  for (size_t i = 0; i < entry.joints.size(); ++i) {
+    const uint64_t sensor_seed = RandomBits(seed, kSensorStream, static_cast<uint64_t>(entry.id), i);
+    drives_.push_back(std::make_unique<ODriveEmulator>(entry.joints[i], scenario.drive, sensor_seed));
+  }
+}
+
+JointTruth EmulatedArm::TruthOf(size_t joint) const { return {plant_.q_rad[joint], plant_.dq_rad_s[joint]}; }
+
+PlanarPlant::Joints EmulatedArm::Torque() const {
+  PlanarPlant::Joints tau_Nm{};
+  for (size_t i = 0; i < drives_.size(); ++i) tau_Nm[i] = drives_[i]->Torque(clock_s_);
+  return tau_Nm;
+}
+
+double EmulatedArm::NextEventClock() const {
+  double next_s = disturbance_.NextChange(time_s()) - start_s_;
+  for (const auto& drive : drives_) {
+    next_s = std::min(next_s, drive->NextTorqueChange(clock_s_));
+    next_s = std::min(next_s, drive->NextEvent(clock_s_));
+  }
+  return next_s;
+}
+
+void EmulatedArm::ReleaseIfReady() {
+  if (released_ || diverged_ || time_s() < -kSameInstant_s) return;
+  if (!std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); })) return;
+  released_ = true;
+  plant_.dq_rad_s = start_speed_rad_s_;
+}
+
+void EmulatedArm::Integrate(double dt_s) {
+  PlanarPlant::Joints tau_Nm = Torque();
+  const PlanarPlant::Joints d_Nm = disturbance_.At(time_s(), plant_, leader_);
+  for (size_t i = 0; i < drives_.size(); ++i) tau_Nm[i] -= d_Nm[i];
+  const PlanarPlant before = plant_;
+  plant_.Step(tau_Nm, dt_s);
+  const bool sane = std::all_of(plant_.dq_rad_s.begin(), plant_.dq_rad_s.end(),
+                                [&](double dq) { return std::abs(dq) <= config_.diverged_rad_s; });
+  if (!sane) {
+    plant_ = before;
+    plant_.dq_rad_s = {};
+    diverged_ = true;
+    released_ = false;
+  }
+}
+
+void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
+  ReleaseIfReady();
+  const double target_s = t_s - start_s_;
+  while (clock_s_ < target_s) {
+    const double next_s = std::min(NextEventClock(), target_s);
+    const double step_end_s = next_s - clock_s_ > config_.step_s + kSameInstant_s ? clock_s_ + config_.step_s : next_s;
+    if (released_ && step_end_s - clock_s_ > kSameInstant_s) Integrate(step_end_s - clock_s_);
+    clock_s_ = step_end_s;
+    for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);
+    ReleaseIfReady();
+  }
+}
+
+void EmulatedArm::OnFrame(double t_s, const CanFrame& frame, FrameList* out) {
+  AdvanceTo(t_s, out);
+  for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), out);
+}
+
+}  // namespace armada

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hil/disturbance.h"
+#include "hil/emulated_drive.h"
+#include "hil/start_state.h"
+
+namespace armada {
+
+/// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until every drive is in
+/// torque mode the joints stand on their brakes at the start position; then the plant is let go with the start speed.
+class EmulatedArm {
+ public:
+  /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial disturbances.
+  EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
+              const LeaderPath* leader, double start_s);
+
+  /// Moves time on to `t_s`; frames that the drives send by themselves are appended to `out`.
+  void AdvanceTo(double t_s, FrameList* out);
+  /// A frame on the arm's bus at `t_s`; answers are appended.
+  void OnFrame(double t_s, const CanFrame& frame, FrameList* out);
+
+  const PlanarPlant& plant() const { return plant_; }
+  double time_s() const { return clock_s_ + start_s_; }
+  /// Torque that the drives produce now, N m.
+  PlanarPlant::Joints Torque() const;
+  /// The joints' speed left every bound; the plant is frozen where it was.
+  bool diverged() const { return diverged_; }
+  bool released() const { return released_; }
+
+ private:
+  JointTruth TruthOf(size_t joint) const;
+  double NextEventClock() const;
+  void ReleaseIfReady();
+  void Integrate(double dt_s);
+
+  PlantConfig config_;
+  PlanarPlant plant_;
+  Disturbance disturbance_;
+  const LeaderPath* leader_;
+  std::vector<std::unique_ptr<EmulatedDrive>> drives_;
+  PlanarPlant::Joints start_speed_rad_s_;
+  double start_s_;
+  double clock_s_ = 0.0;  ///< since the bench was switched on: the drives' time
+  bool released_ = false;
+  bool diverged_ = false;
+};
+
+}  // namespace armada

@@ -1,0 +1,132 @@
+#include "hil/hil_server.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace armada {
+namespace {
+
+constexpr int64_t kTick_ns = 1'000'000;
+static_assert(TrackingRecord::kSamplePeriod_s * 1e9 == kTick_ns);
+
+// Frames of one bus handled before the others get their turn: more than come in 50 ms of the busiest arm.
+constexpr int kMostFramesInTurn = 256;
+
+// The last tick of the fleet's clock that is not after `t_ns`.
+int64_t TickBefore(int64_t t_ns, int64_t epoch_ns) {
+  const int64_t since_ns = t_ns - epoch_ns;
+  const int64_t rest_ns = (since_ns % kTick_ns + kTick_ns) % kTick_ns;
+  return t_ns - rest_ns;
+}
+
+}  // namespace
+
+HilServer::HilServer(const ScenarioConfig& scenario, uint64_t seed, int64_t epoch_ns,
+                     const std::vector<std::unique_ptr<CanBus>>& buses, const std::vector<CanLog*>& logs,
+                     HilClock* clock)
+    : epoch_ns_(epoch_ns), clock_(clock) {
+  if (scenario.leader.kind != LeaderKind::kNone) leader_.emplace(scenario.leader);
+  const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
+  const int64_t start_ns = TickBefore(clock->Now(), epoch_ns);
+  next_tick_ns_ = start_ns + kTick_ns;
+  arms_.reserve(buses.size());
+  for (size_t i = 0; i < buses.size(); ++i) {
+    const ArmEntry& entry = scenario.fleet.arms[i];
+    const ArmStart start = DrawStart(scenario, i, seed, leader);
+    arms_.push_back({.id = entry.id,
+                     .bus_name = entry.bus,
+                     .bus = buses[i].get(),
+                     .log = logs.empty() ? nullptr : logs[i],
+                     .bench = EmulatedArm(scenario, i, seed, start, leader, FleetTime(start_ns)),
+                     .record = TrackingRecord(scenario),
+                     .time_ns = start_ns,
+                     .next_tick_ns = next_tick_ns_,
+                     .released_s = std::nullopt});
+  }
+}
+
+HilEnd HilServer::Run(double seconds) {
+  const int64_t end_ns = epoch_ns_ + std::llround(seconds * 1e9);
+  while (clock_->WaitUntil(std::min(next_tick_ns_, end_ns))) {
+    const int64_t now_ns = clock_->Now();
+    for (; next_tick_ns_ <= std::min(now_ns, end_ns); next_tick_ns_ += kTick_ns) pacing_.Add(now_ns - next_tick_ns_);
+    for (Arm& arm : arms_) {
+      if (Serve(arm, now_ns, end_ns) == BusStatus::kDown) return HilEnd::kBusDown;
+    }
+    if (now_ns >= end_ns) return HilEnd::kDone;
+  }
+  return HilEnd::kStopped;
+}
+
+BusStatus HilServer::Serve(Arm& arm, int64_t now_ns, int64_t end_ns) {
+  for (int i = 0; i < kMostFramesInTurn; ++i) {
+    CanFrame frame;
+    const BusStatus status = arm.bus->Receive(0, &frame);
+    if (status == BusStatus::kDown) return status;
+    if (status != BusStatus::kOk) break;
+    if (arm.log != nullptr) arm.log->Record(frame.stamp_ns, frame);
+    const int64_t t_ns = std::clamp(frame.stamp_ns, arm.time_ns, std::max(arm.time_ns, end_ns));
+    if (AdvanceTo(arm, t_ns) == BusStatus::kDown) return BusStatus::kDown;
+    arm.bench.OnFrame(FleetTime(t_ns), frame, &out_);
+    if (SendReplies(arm) == BusStatus::kDown) return BusStatus::kDown;
+  }
+  return AdvanceTo(arm, std::min(now_ns, end_ns));
+}
+
+// A frame may have been taken that came after the loop looked at the clock: then time is ahead, and stays.
+BusStatus HilServer::AdvanceTo(Arm& arm, int64_t t_ns) {
+  for (; arm.next_tick_ns <= t_ns; arm.next_tick_ns += kTick_ns) {
+    if (MoveBench(arm, arm.next_tick_ns) == BusStatus::kDown) return BusStatus::kDown;
+    Sample(arm);
+  }
+  return t_ns > arm.time_ns ? MoveBench(arm, t_ns) : BusStatus::kOk;
+}
+
+BusStatus HilServer::MoveBench(Arm& arm, int64_t t_ns) {
+  arm.time_ns = t_ns;
+  arm.bench.AdvanceTo(FleetTime(t_ns), &out_);
+  if (!arm.released_s && arm.bench.released()) arm.released_s = FleetTime(t_ns);
+  return SendReplies(arm);
+}
+
+// The log has the bench's time for what the drives send, so that it stays in order: how much later the frame went out is
+// pacing's to tell.
+BusStatus HilServer::SendReplies(Arm& arm) {
+  BusStatus worst = BusStatus::kOk;
+  for (const CanFrame& frame : out_) {
+    const BusStatus status = arm.bus->Send(frame);
+    if (status == BusStatus::kOk && arm.log != nullptr) arm.log->Record(arm.time_ns, frame);
+    if (status == BusStatus::kDown) worst = status;
+  }
+  out_.Clear();
+  return worst;
+}
+
+void HilServer::Sample(Arm& arm) {
+  if (!leader_ || arm.time_ns <= epoch_ns_) return;
+  const double t_s = FleetTime(arm.time_ns);
+  const TaskVector target_m = leader_->At(t_s).x_m;
+  const PlanarPlant::Tip tip = arm.bench.plant().EndEffector();
+  arm.record.Update(t_s, std::hypot(tip.x_m[0] - target_m[0], tip.x_m[1] - target_m[1]));
+}
+
+double HilServer::time_s() const {
+  int64_t first_ns = arms_.front().time_ns;
+  for (const Arm& arm : arms_) first_ns = std::min(first_ns, arm.time_ns);
+  return FleetTime(first_ns);
+}
+
+std::vector<HilArmResult> HilServer::Results() const {
+  std::vector<HilArmResult> results;
+  for (const Arm& arm : arms_) {
+    results.push_back({.id = arm.id,
+                       .bus = arm.bus_name,
+                       .diverged = arm.bench.diverged(),
+                       .released_s = arm.released_s,
+                       .record = leader_ ? std::optional(arm.record) : std::nullopt,
+                       .counters = arm.bus->counters()});
+  }
+  return results;
+}
+
+}  // namespace armada

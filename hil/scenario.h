@@ -1,0 +1,188 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/app/fleet.h"
+#include "hil/emulated_drive.h"
+
+namespace armada {
+
+/// x_0(t) per axis = offset + amplitude sin(2 pi frequency t + phase).
+struct SineAxisConfig {
+  double offset_m = 0.0;
+  double amplitude_m = 0.0;
+  double frequency_hz = 0.0;
+  double phase_rad = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"offset_m", "m", -100, 100, "centre of the motion"}, offset_m);
+    parameter({"amplitude_m", "m", 0, 100, "amplitude of the motion"}, amplitude_m);
+    parameter({"frequency_hz", "Hz", 0, 100, "frequency of the motion"}, frequency_hz);
+    parameter({"phase_rad", "rad", -7, 7, "phase of the sine at t = 0"}, phase_rad);
+  }
+};
+
+enum class LeaderKind { kNone, kSine, kWaypoints };
+
+struct LeaderConfig {
+  LeaderKind kind = LeaderKind::kSine;
+  double rate_hz = 100.0;
+  std::vector<SineAxisConfig> axes;              ///< sine: one an axis
+  std::vector<std::vector<double>> waypoints_m;  ///< waypoints: visited in turn, at rest in each
+  double speed_m_s = 0.5;
+  double acceleration_m_s2 = 2.0;
+  double jerk_m_s3 = 15.0;
+  double dwell_s = 0.0;
+  bool loop = true;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"kind", "", 0, 0, "leader: none, sine, waypoints"}, kind);
+    parameter({"rate_hz", "Hz", 1, 1000, "messages a second on LEADER"}, rate_hz);
+    parameter({"speed_m_s", "m/s", 1e-3, 100, "waypoints: bound on the speed along the path"}, speed_m_s);
+    parameter({"acceleration_m_s2", "m/s^2", 1e-3, 1e3, "waypoints: bound on the acceleration"},
+              acceleration_m_s2);
+    parameter({"jerk_m_s3", "m/s^3", 1e-3, 1e4, "waypoints: bound on the jerk"}, jerk_m_s3);
+    parameter({"dwell_s", "s", 0, 1e3, "waypoints: time at rest in each"}, dwell_s);
+    parameter({"loop", "", 0, 1, "waypoints: from the last back to the first, for ever"}, loop);
+    parameter({"waypoints_m", "m", -100, 100, "waypoints: [x, y] of each, visited in turn"}, waypoints_m);
+    parameter.List({"axis", "sine: motion along one axis, x and then y"}, axes);
+  }
+};
+
+enum class StartKind {
+  kBox,         ///< the paper's: every element at random in its range
+  kNearLeader,  ///< at rest, the end effector near x_0(0), the elbow bent
+};
+
+struct StartConfig {
+  StartKind kind = StartKind::kBox;
+  double q_range_rad = 5.0;
+  double dq_range_rad_s = 5.0;
+  double zeta_range = 5.0;
+  TaskVector zeta_x_centre_m = TaskVector::Zero(1);  ///< one value stands for all axes until the file is read
+  double theta_hat_max = 5.0;
+  double near_leader_m = 0.1;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"kind", "", 0, 0, "start states: box (the paper's), near_leader (at rest, near the leader)"},
+              kind);
+    parameter({"q_range_rad", "rad", 0, 100, "box: q(0) uniform in +- this"}, q_range_rad);
+    parameter({"dq_range_rad_s", "rad/s", 0, 100, "box: dq(0) uniform in +- this"}, dq_range_rad_s);
+    parameter({"zeta_range", "m, m/s, m/s^2", 0, 100, "every element of zeta(0) uniform in +- this"},
+              zeta_range);
+    parameter({"zeta_x_centre_m", "m", -100, 100, "x part of zeta(0) lies around this, unless the start is near_leader"},
+              zeta_x_centre_m);
+    parameter({"theta_hat_max", "kg m^2", 0, 1e3, "every element of theta_hat(0) uniform in [0, this]"},
+              theta_hat_max);
+    parameter({"near_leader_m", "m", 0, 10, "near_leader: start within this of x_0(0) on each axis"},
+              near_leader_m);
+  }
+};
+
+enum class DisturbanceKind { kNone, kUniform, kConstant, kSine, kAdversarial };
+
+struct DisturbanceConfig {
+  DisturbanceKind kind = DisturbanceKind::kUniform;
+  double amplitude_Nm = 40.0;
+  double hold_s = 0.01;
+  double frequency_hz = 0.5;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"kind", "", 0, 0,
+               "d(t) of (1.1): none, uniform (random, held), constant, sine, adversarial (pushes away from "
+               "the leader)"},
+              kind);
+    parameter({"amplitude_Nm", "N m", 0, 1e5, "largest disturbance of each joint"}, amplitude_Nm);
+    parameter({"hold_s", "s", 1e-4, 1e3, "uniform, adversarial: time for which a value is held"}, hold_s);
+    parameter({"frequency_hz", "Hz", 0, 1e3,
+               "sine: frequency of the first joint; each further one is 0.2 Hz faster"},
+              frequency_hz);
+  }
+};
+
+/// The link between the boards in virtual time.
+struct NetworkConfig {
+  int delay_ticks = 0;
+  double loss = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"delay_ticks", "ticks", 0, 50, "control periods that a message is under way, beside none"},
+              delay_ticks);
+    parameter({"loss", "", 0, 1, "share of messages lost, each receiver on its own"}, loss);
+  }
+};
+
+enum class CriterionKind {
+  kTracking,   ///< every arm stays near the leader in the window
+  kAgreement,  ///< leaderless: estimates agree and every arm stays near the agreed point
+};
+
+struct CriterionConfig {
+  CriterionKind kind = CriterionKind::kTracking;
+  double error_max_m = 0.02;
+  double fleet_rms_max_m = 0.0;
+  double agreement_max_m = 0.001;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"kind", "", 0, 0, "what ok means: tracking, agreement (leaderless)"}, kind);
+    parameter({"error_max_m", "m", 0, 100, "largest error of any arm in the window; also the settling band"},
+              error_max_m);
+    parameter({"fleet_rms_max_m", "m", 0, 100, "largest fleet RMS; 0: no bound"}, fleet_rms_max_m);
+    parameter(
+        {"agreement_max_m", "m", 0, 100, "agreement: largest distance between two estimates in the window"},
+        agreement_max_m);
+  }
+};
+
+struct PlantConfig {
+  double step_s = 0.001;
+  double diverged_rad_s = 1e4;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"step_s", "s", 1e-6, 0.001, "largest integration step of the plant (RK4)"}, step_s);
+    parameter(
+        {"diverged_rad_s", "rad/s", 1, 1e9, "joint speed at which an arm counts as diverged and is frozen"},
+        diverged_rad_s);
+  }
+};
+
+/// A run: a fleet, a leader, and the world around them.
+struct ScenarioConfig {
+  std::string name;
+  std::string file;
+  FleetConfig fleet;
+  double seconds = 30.0;
+  double window_start_s = 15.0;
+  LeaderConfig leader;
+  StartConfig start;
+  DisturbanceConfig disturbance;
+  EmulatedDriveConfig drive;
+  NetworkConfig network;
+  PlantConfig plant;
+  CriterionConfig criterion;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"seconds", "s", 0.1, 1e6, "length of the run"}, seconds);
+    parameter({"window_start_s", "s", 0, 1e6,
+               "start of the window over which errors are measured; its end is the run's"},
+              window_start_s);
+    parameter.Table("leader", leader);
+    parameter.Table("start", start);
+    parameter.Table("disturbance", disturbance);
+    parameter.Table("drive", drive);
+    parameter.Table("network", network);
+    parameter.Table("plant", plant);
+    parameter.Table("criterion", criterion);
+  }
+};
+
+}  // namespace armada

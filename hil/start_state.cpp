@@ -1,0 +1,60 @@
+#include "hil/start_state.h"
+
+#include <Eigen/Cholesky>
+
+#include "hil/random.h"
+
+namespace armada {
+namespace {
+
+// Joint angles that put the end effector at x, from a bent elbow: damped least squares, always the same branch.
+JointVector SolveInverseKinematics(const PlanarArm& arm, const TaskVector& x) {
+  JointVector q = JointVector::Constant(arm.dof(), 1.2);
+  q[0] = 0.3 - arm.config().base_orientation_rad;
+  for (int iteration = 0; iteration < 300; ++iteration) {
+    const PlanarArm::Posture at = arm.At(q);
+    const JacobianMatrix J = arm.Jacobian(at);
+    Eigen::Matrix2d JJt = J * J.transpose();
+    JJt.diagonal().array() += 1e-3;
+    const Eigen::Vector2d error = x - arm.Position(at);
+    const Eigen::Vector2d weighted = JJt.llt().solve(error);
+    q += J.transpose() * weighted;
+  }
+  return q;
+}
+
+}  // namespace
+
+ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader) {
+  const StartConfig& config = scenario.start;
+  const PlanarArm arm(scenario.fleet.arms[index].arm);
+  const auto arm_id = static_cast<uint64_t>(scenario.fleet.arms[index].id);
+  uint64_t draws = 0;
+  const auto draw = [&](double low, double high) {
+    return Uniform(RandomBits(seed, kStartStream, arm_id, draws++), low, high);
+  };
+
+  ArmStart start;
+  const auto dof = static_cast<size_t>(arm.dof());
+  if (config.kind == StartKind::kBox) {
+    for (size_t i = 0; i < dof; ++i) start.q_rad[i] = draw(-config.q_range_rad, config.q_range_rad);
+    for (size_t i = 0; i < dof; ++i) start.dq_rad_s[i] = draw(-config.dq_range_rad_s, config.dq_range_rad_s);
+  }
+
+  Zeta& zeta = start.controller.zeta;
+  zeta = leader != nullptr && config.kind == StartKind::kNearLeader ? leader->At(0.0) : Zeta::Zero(PlanarArm::kTaskDim);
+  if (config.kind == StartKind::kNearLeader) {
+    TaskVector x = zeta.x_m;
+    for (double& x_c : x) x_c += draw(-config.near_leader_m, config.near_leader_m);
+    const JointVector q = SolveInverseKinematics(arm, x);
+    std::copy(q.data(), q.data() + q.size(), start.q_rad.begin());
+  }
+  for (TaskVector* part : {&zeta.x_m, &zeta.v_m_s, &zeta.a_m_s2}) {
+    for (double& element : *part) element += draw(-config.zeta_range, config.zeta_range);
+  }
+  start.controller.theta_hat = ParameterVector(arm.parameter_count());
+  for (double& element : start.controller.theta_hat) element = draw(0.0, config.theta_hat_max);
+  return start;
+}
+
+}  // namespace armada

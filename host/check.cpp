@@ -1,0 +1,43 @@
+#include "host/check.h"
+
+#include <iostream>
+
+#include "firmware/app/config/fleet_file.h"
+#include "firmware/app/config/toml_parser.h"
+#include "firmware/app/exit_codes.h"
+#include "hil/scenario_file.h"
+#include "host/check/check_output.h"
+
+namespace armada {
+namespace {
+
+// A scenario names its fleet; a fleet file has its arms in it.
+bool IsFleetFile(const ConfigNode& root) {
+  return root.Find("fleet") == nullptr && root.Find("arm") != nullptr;
+}
+
+std::optional<CheckResult> LoadAndCheck(const CheckOptions& options, std::vector<ConfigError>* errors) {
+  const auto root = LoadToml(options.path, errors);
+  if (!root) return std::nullopt;
+  if (IsFleetFile(*root)) {
+    const auto fleet = LoadFleet(options.path, options.sets, errors);
+    return fleet ? std::optional(BuildCheck(*fleet)) : std::nullopt;
+  }
+  const auto scenario = LoadScenario(options.path, options.sets, errors);
+  return scenario ? std::optional(BuildCheck(*scenario)) : std::nullopt;
+}
+
+}  // namespace
+
+int RunCheck(const CheckOptions& options) {
+  std::vector<ConfigError> errors;
+  const auto result = LoadAndCheck(options, &errors);
+  if (!result) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+  options.json ? PrintJson(*result, std::cout) : PrintText(*result, std::cout);
+  return result->ok() ? kExitOk : kExitFailed;
+}
+
+}  // namespace armada

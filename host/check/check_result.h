@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/check/graph_check.h"
+#include "host/check/margin_check.h"
+#include "host/check/path_check.h"
+
+namespace armada {
+
+enum class Severity {
+  kWarning,  ///< a condition of the theorem or a margin is missed; the fleet may still work
+  kError,    ///< the task cannot be done as configured
+};
+
+struct Finding {
+  Severity severity = Severity::kWarning;
+  std::string text;
+};
+
+struct ArmCheck {
+  int id = 0;
+  int dof = 0;
+  double bus_load = 0.0;                        ///< share of its bus
+  std::optional<DisturbanceCheck> disturbance;  ///< of a scenario
+  std::optional<PathCheck> path;                ///< of a scenario with a leader
+};
+
+/// What `armada check` finds out about a fleet, or a scenario, that the loader has taken. All numbers come
+/// from the configuration.
+struct CheckResult {
+  std::string name;
+  std::string file;
+  bool leaderless = false;
+  double period_s = 0.0;
+  std::vector<TopologyCheck> topologies;
+  std::vector<ArmCheck> arms;               ///< in the fleet's order
+  std::optional<EstimatorCheck> estimator;  ///< of a scenario with a leader
+  std::vector<Finding> findings;
+
+  bool ok() const;  ///< no error among the findings
+};
+
+/// The fleet alone: graph, projection, bus.
+CheckResult BuildCheck(const FleetConfig& fleet);
+
+/// The fleet in its scenario: all of it.
+CheckResult BuildCheck(const ScenarioConfig& scenario);
+
+}  // namespace armada

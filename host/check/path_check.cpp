@@ -1,0 +1,107 @@
+#include "host/check/path_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/core/reference.h"
+
+namespace armada {
+namespace {
+
+constexpr double kStep_s = 0.001;
+constexpr double kSettle_s = 5.0;      // from the bent elbow to the path
+constexpr double kMotionMax_s = 60.0;  // of the path, for what costs inverse kinematics
+constexpr int kReachSamplesMax = 200'000;
+
+void MeasureReach(const PlanarArm& arm, const LeaderPath& leader, double length_s, PathCheck& check) {
+  check.reach_outer_m = check.reach_inner_m = std::numeric_limits<double>::infinity();
+  const int samples = std::clamp(static_cast<int>(std::min(length_s / kStep_s, 1e9)), 1, kReachSamplesMax);
+  for (int k = 0; k <= samples; ++k) {
+    const double radius_m = (leader.At(length_s * k / samples).x_m - arm.Base()).norm();
+    check.reach_outer_m = std::min(check.reach_outer_m, arm.reach_max_m() - radius_m);
+    check.reach_inner_m = std::min(check.reach_inner_m, radius_m - arm.reach_min_m());
+  }
+}
+
+// The arm as a perfect controller would move it.
+class PerfectMotion {
+ public:
+  PerfectMotion(const ArmEntry& entry, const LeaderPath& leader, double elbow_rad)
+      : entry_(entry), leader_(leader), arm_(entry.arm), q_(JointVector::Constant(entry.arm.dof, elbow_rad)) {
+    q_[0] = -entry.arm.base_orientation_rad;
+  }
+
+  const PlanarArm& arm() const { return arm_; }
+  const JointVector& q_rad() const { return q_; }
+
+  JointVector Velocity(double t_s, const JointVector& q) const {
+    const ControlConfig& control = entry_.control;
+    return ReferenceVelocity(control.reference, control.pseudoinverse, control.subtask, arm_, q,
+                             leader_.At(t_s), true);
+  }
+
+  void Advance(double t_s) {
+    const JointVector middle = q_ + 0.5 * kStep_s * Velocity(t_s, q_);
+    q_ += kStep_s * Velocity(t_s + 0.5 * kStep_s, middle);
+  }
+
+ private:
+  const ArmEntry& entry_;
+  const LeaderPath& leader_;
+  PlanarArm arm_;
+  JointVector q_;
+};
+
+void MeasureMotion(PerfectMotion motion, const LeaderPath& leader, double disturbance_Nm, PathCheck& check) {
+  const auto settle = static_cast<int>(kSettle_s / kStep_s);
+  const auto samples = static_cast<int>(check.sampled_s / kStep_s);
+  for (int k = -settle; k < 0; ++k) motion.Advance(k * kStep_s);
+
+  const PlanarArm& arm = motion.arm();
+  const ParameterVector theta = arm.Theta();
+  for (int k = 0; k <= samples; ++k) {
+    const double t_s = k * kStep_s;
+    const JointVector q = motion.q_rad();
+    const JointVector dq = motion.Velocity(t_s, q);
+    motion.Advance(t_s);
+    const JointVector ddq = (motion.Velocity(t_s + kStep_s, motion.q_rad()) - dq) / kStep_s;
+
+    const PlanarArm::Posture at = arm.At(q);
+    const JointVector tau_Nm = arm.Inertia(at, theta) * ddq + arm.Bias(at, dq, theta);
+    for (size_t i = 0; i < check.torques.size(); ++i) {
+      double& needed_Nm = check.torques[i].needed_Nm;
+      needed_Nm = std::max(needed_Nm, std::abs(tau_Nm[static_cast<Eigen::Index>(i)]) + disturbance_Nm);
+    }
+    check.sigma_min = std::min(check.sigma_min, DampedPseudoinverse({}, arm.Jacobian(at)).sigma_min);
+    check.error_m = std::max(check.error_m, (leader.At(t_s).x_m - arm.Position(at)).norm());
+  }
+}
+
+}  // namespace
+
+size_t PathCheck::WorstJoint() const {
+  const auto worst =
+      std::max_element(torques.begin(), torques.end(),
+                       [](const TorqueNeed& a, const TorqueNeed& b) { return a.share() < b.share(); });
+  return static_cast<size_t>(worst - torques.begin());
+}
+
+PathCheck CheckPath(const ScenarioConfig& scenario, const ArmEntry& entry, const LeaderPath& leader) {
+  const double length_s = std::min(leader.period_s(), scenario.seconds);
+  PathCheck check;
+  MeasureReach(PlanarArm(entry.arm), leader, length_s, check);
+
+  check.sampled_s = std::min(length_s, kMotionMax_s);
+  check.sigma_min = std::numeric_limits<double>::infinity();
+  for (const JointDriveConfig& joint : entry.joints) check.torques.push_back({0.0, joint.torque_limit_Nm});
+  const DisturbanceConfig& disturbance = scenario.disturbance;
+  const double disturbance_Nm = disturbance.kind == DisturbanceKind::kNone ? 0.0 : disturbance.amplitude_Nm;
+  constexpr double kElbow_rad = 1.2;
+  for (const double elbow_rad : {kElbow_rad, -kElbow_rad}) {
+    MeasureMotion(PerfectMotion(entry, leader, elbow_rad), leader, disturbance_Nm, check);
+  }
+  return check;
+}
+
+}  // namespace armada

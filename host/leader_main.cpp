@@ -1,0 +1,154 @@
+// armada-leader: publishes the leader's state on LEADER, on an absolute time grid.
+//
+// Exit codes: 0 stopped by a signal or after --seconds; 1 the network cannot be used; 2 usage; 78 bad
+// configuration.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <limits>
+
+#include "firmware/app/exit_codes.h"
+#include "firmware/app/realtime.h"
+#include "firmware/link/channels.h"
+#include "firmware/link/lcm_endpoint.h"
+#include "firmware/link/messages.h"
+#include "hil/leader_path.h"
+#include "hil/scenario_file.h"
+
+namespace armada {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void StopOnSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_requested = 1; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+struct Options {
+  std::string scenario;
+  std::vector<std::string> sets;
+  int64_t epoch_ns = 0;  // 0: with the first message
+  double seconds = std::numeric_limits<double>::infinity();
+  int priority = 80;
+};
+
+// Times of the messages: epoch + k / rate, for every integer k.
+class Grid {
+ public:
+  Grid(int64_t epoch_ns, double rate_hz) : epoch_ns_(epoch_ns), rate_hz_(rate_hz) {}
+
+  int64_t Stamp(int64_t k) const { return epoch_ns_ + std::llround(1e9 * static_cast<double>(k) / rate_hz_); }
+  /// Fleet time of the stamp: the state that is sent is exactly that of the stamp.
+  double PathTime(int64_t k) const { return static_cast<double>(Stamp(k) - epoch_ns_) / 1e9; }
+  /// First k whose time is not before now.
+  int64_t Next(int64_t now_ns) const {
+    auto k = static_cast<int64_t>(std::floor(1e-9 * static_cast<double>(now_ns - epoch_ns_) * rate_hz_));
+    while (Stamp(k) < now_ns) ++k;
+    return k;
+  }
+
+ private:
+  int64_t epoch_ns_;
+  double rate_hz_;
+};
+
+leader_t MessageAt(const LeaderPath& path, double path_time_s) {
+  const Zeta zeta = path.At(path_time_s);
+  leader_t message{};
+  message.path_time_s = path_time_s;
+  message.task_dim = static_cast<int8_t>(zeta.x_m.size());
+  std::copy(zeta.x_m.begin(), zeta.x_m.end(), message.x_m);
+  std::copy(zeta.v_m_s.begin(), zeta.v_m_s.end(), message.v_m_s);
+  std::copy(zeta.a_m_s2.begin(), zeta.a_m_s2.end(), message.a_m_s2);
+  return message;
+}
+
+struct Tally {
+  int64_t sent = 0;
+  int64_t refused = 0;  // by the kernel
+  int64_t skipped = 0;  // grid times that passed before the process woke up: never sent late in a burst
+};
+
+Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, LcmEndpoint& lcm) {
+  Tally tally;
+  MessageBuffer buffer;
+  int64_t k = grid.Next(MonotonicNow());
+  while (stop_requested == 0 && grid.PathTime(k) < seconds) {
+    SleepUntil(grid.Stamp(k));
+    if (MonotonicNow() < grid.Stamp(k)) continue;  // a signal woke it
+
+    leader_t message = MessageAt(path, grid.PathTime(k));
+    message.stamp_ns = grid.Stamp(k);
+    message.sequence = tally.sent + 1;
+    lcm.Publish(kLeaderChannel, Encode(message, &buffer)) ? ++tally.sent : ++tally.refused;
+
+    const int64_t next = std::max(k + 1, grid.Next(MonotonicNow()));
+    tally.skipped += next - (k + 1);
+    k = next;
+  }
+  return tally;
+}
+
+int Run(const Options& options) {
+  std::vector<ConfigError> errors;
+  const auto scenario = LoadScenario(options.scenario, options.sets, &errors);
+  if (!scenario) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+  if (scenario->leader.kind == LeaderKind::kNone) {
+    std::cerr << "armada-leader: " << options.scenario
+              << " has no leader (leader.kind = \"none\"): nothing to publish\n";
+    return kExitUsage;
+  }
+  std::string error;
+  const auto url = ParseLcmUrl(scenario->fleet.link.lcm_url, &error);
+  const auto lcm = url ? LcmEndpoint::Open(*url, &error) : nullptr;
+  if (!lcm) {
+    std::cerr << "armada-leader: " << error << '\n';
+    return kExitFailed;
+  }
+
+  const RealtimeGrant grant = EnterRealtime(options.priority);
+  if (!grant.complaint.empty()) std::cerr << "armada-leader: " << grant.complaint << '\n';
+  const double rate_hz = scenario->leader.rate_hz;
+  const int64_t first_ns = MonotonicNow() + std::llround(1e9 / rate_hz);
+  const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : first_ns;
+  std::cout << "armada-leader: " << kLeaderChannel << " at " << rate_hz << " Hz on " << ToString(*url)
+            << ", epoch " << epoch_ns << " ns" << std::endl;
+  const Tally tally = Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, *lcm);
+  std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
+            << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
+  return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;
+}
+
+}  // namespace
+}  // namespace armada
+
+int main(int argc, char** argv) {
+  armada::Options options;
+  CLI::App app("Publishes the leader of a scenario on LCM, channel LEADER.", "armada-leader");
+  app.add_option("SCENARIO", options.scenario, "scenario file")->required();
+  app.add_option("--epoch-ns", options.epoch_ns,
+                 "fleet's time 0 on CLOCK_MONOTONIC, ns; default: the first message")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seconds", options.seconds,
+                 "length of the run from the epoch; default: until SIGINT or SIGTERM")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--set", options.sets, "key=value in place of the scenario's; may be repeated")->expected(1);
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
+      ->check(CLI::Range(0, 99));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
+  }
+  armada::StopOnSignals();
+  return armada::Run(options);
+}

@@ -1,0 +1,89 @@
+#include "host/metrics.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "firmware/app/config/enum_names.h"
+
+namespace armada {
+namespace {
+
+template <class T>
+nlohmann::ordered_json OrNull(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
+  return {{"id", arm.id},
+          {"dof", arm.dof},
+          {"subtask", NameOf(arm.subtask)},
+          {"diverged", arm.diverged},
+          {"settled_s", OrNull(arm.settled_s)},
+          {"rms_mm", arm.rms_m * 1e3},
+          {"max_mm", arm.max_m * 1e3},
+          {"estimator_rms",
+           {{"x", arm.estimator_rms.x_m}, {"v", arm.estimator_rms.v_m_s}, {"a", arm.estimator_rms.a_m_s2}}},
+          {"torque_max_nm", arm.torque_max_Nm},
+          {"saturated_ticks", arm.saturated_ticks},
+          {"parameter_error", arm.parameter_error},
+          {"subtask_rms", OrNull(arm.subtask_rms_rad_s)},
+          {"posture_rms_rad", OrNull(arm.posture_rms_rad)},
+          {"state", arm.state},
+          {"faults", arm.faults}};
+}
+
+}  // namespace
+
+void RunMetrics::Judge(const CriterionConfig& criterion) {
+  double sum_squares_m2 = 0.0;
+  ok = !arms.empty();
+  for (const ArmMetrics& arm : arms) {
+    sum_squares_m2 += arm.rms_m * arm.rms_m;
+    if (arm.diverged || !(arm.max_m < criterion.error_max_m)) ok = false;
+  }
+  fleet_rms_m = arms.empty() ? 0.0 : std::sqrt(sum_squares_m2 / static_cast<double>(arms.size()));
+  if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;
+  if (criterion.kind == CriterionKind::kAgreement && !(estimate_spread_m < criterion.agreement_max_m)) ok = false;
+}
+
+nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
+  nlohmann::ordered_json arms = nlohmann::ordered_json::array();
+  for (const ArmMetrics& arm : metrics.arms) arms.push_back(ToJson(arm));
+  return {{"schema", 1},
+          {"scenario", metrics.scenario},
+          {"scenario_file", metrics.scenario_file},
+          {"mode", metrics.mode},
+          {"law", NameOf(metrics.law)},
+          {"estimator", NameOf(metrics.estimator)},
+          {"seed", metrics.seed},
+          {"seconds", metrics.seconds},
+          {"window_s", {metrics.window_start_s, metrics.seconds}},
+          {"arms", arms},
+          {"estimate_spread_mm", metrics.estimate_spread_m * 1e3},
+          {"fleet_rms_mm", metrics.fleet_rms_m * 1e3},
+          {"ok", metrics.ok}};
+}
+
+bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error) {
+  const std::filesystem::path target(path);
+  std::error_code code;
+  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), code);
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream file(temporary);
+    file << json.dump(2) << '\n';
+    if (!file.flush()) {
+      *error = "cannot write " + temporary + ": " + std::strerror(errno);
+      return false;
+    }
+  }
+  std::filesystem::rename(temporary, target, code);
+  if (code) *error = "cannot write " + path + ": " + code.message();
+  return !code;
+}
+
+}  // namespace armada

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hil/scenario.h"
+
+namespace armada {
+
+struct EstimatorRms {
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+};
+
+/// Result of one arm in one run: an entry of "arms" in metrics.json.
+struct ArmMetrics {
+  int id = 0;
+  int dof = 0;
+  SubtaskKind subtask = SubtaskKind::kNone;
+  bool diverged = false;
+  std::optional<double> settled_s;
+  double rms_m = 0.0;
+  double max_m = 0.0;
+  EstimatorRms estimator_rms;
+  double torque_max_Nm = 0.0;
+  int saturated_ticks = 0;
+  double parameter_error = 0.0;              ///< |theta_hat - theta| / |theta| at the end
+  std::optional<double> subtask_rms_rad_s;   ///< RMS of |e_s| in the window; none without a subtask
+  std::optional<double> posture_rms_rad;     ///< RMS distance from the posture's goal in the window
+  std::string state = "INIT";
+  std::vector<std::string> faults;
+};
+
+/// Result of a run: metrics.json.
+struct RunMetrics {
+  std::string scenario;
+  std::string scenario_file;
+  std::string mode;  ///< "sim" or "run"
+  LawKind law = LawKind::kRobust;
+  EstimatorKind estimator = EstimatorKind::kPredictive;
+  uint64_t seed = 0;
+  double seconds = 0.0;
+  double window_start_s = 0.0;
+  std::vector<ArmMetrics> arms;
+  double estimate_spread_m = 0.0;  ///< largest distance between two estimates of x in the window
+  double fleet_rms_m = 0.0;
+  bool ok = false;
+
+  /// Fills fleet_rms_m and ok from the arms by the scenario's criterion.
+  void Judge(const CriterionConfig& criterion);
+};
+
+/// The schema of docs/metrics.md, SI units but for names that say millimetres.
+nlohmann::ordered_json ToJson(const RunMetrics& metrics);
+
+/// Writes through a temporary file, so that a reader never sees half of it. False with *error set.
+bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error);
+
+}  // namespace armada

@@ -1,0 +1,54 @@
+#include "host/report/process_table.h"
+
+#include <algorithm>
+#include <array>
+
+namespace armada {
+namespace {
+
+constexpr std::array kSections = {"timing", "memory", "bus"};
+
+std::string NameOf(const Json& object, const std::string& key) {
+  if (object.contains("name")) return object["name"].get<std::string>();
+  if (object.contains("id")) return "arm " + object["id"].dump();
+  return key.empty() ? "run" : key;
+}
+
+void AddValues(const Json& value, const std::string& quantity, const std::string& process,
+               ProcessTable* table) {
+  if (value.is_object()) {
+    const std::string prefix = quantity + ".";
+    for (const auto& [key, part] : value.items()) AddValues(part, prefix + key, process, table);
+    return;
+  }
+  if (std::find(table->quantities.begin(), table->quantities.end(), quantity) == table->quantities.end()) {
+    table->quantities.push_back(quantity);
+  }
+  table->values[{quantity, process}] = value;
+}
+
+void Collect(const Json& value, const std::string& key, ProcessTable* table) {
+  const bool is_process =
+      value.is_object() &&
+      std::any_of(kSections.begin(), kSections.end(), [&](const char* name) { return value.contains(name); });
+  if (is_process) {
+    const std::string name = NameOf(value, key);
+    table->processes.push_back(name);
+    for (const char* section : kSections) {
+      if (value.contains(section)) AddValues(value[section], section, name, table);
+    }
+    return;
+  }
+  if (!value.is_structured()) return;
+  for (const auto& [part_key, part] : value.items()) Collect(part, part_key, table);
+}
+
+}  // namespace
+
+ProcessTable CollectProcesses(const Json& metrics) {
+  ProcessTable table;
+  Collect(metrics, "", &table);
+  return table;
+}
+
+}  // namespace armada

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hil/scenario.h"
+
+namespace armada {
+
+/// What every command that runs a scenario takes.
+struct ScenarioArguments {
+  std::string scenario;
+  std::string law;
+  std::string estimator;
+  std::optional<double> seconds;
+  std::vector<std::string> sets;
+
+  void AddTo(CLI::App* command);
+  /// The overrides in order: --law, --estimator, --seconds, then each --set.
+  std::vector<std::string> Overrides() const;
+  /// The scenario with its overrides; every error is printed to stderr when there is none.
+  std::optional<ScenarioConfig> Load() const;
+};
+
+}  // namespace armada

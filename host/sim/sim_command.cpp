@@ -1,0 +1,47 @@
+#include "host/sim/sim_command.h"
+
+#include <cstdio>
+#include <iostream>
+
+#include "firmware/app/exit_codes.h"
+#include "hil/scenario_file.h"
+#include "host/arm_table.h"
+#include "host/sim/simulation.h"
+
+namespace armada {
+
+bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory, RunMetrics* metrics,
+                  std::string* error) {
+  TraceWriter trace(directory, scenario.fleet);
+  if (!trace.ok()) {
+    *error = trace.error();
+    return false;
+  }
+  *metrics = Simulation(scenario, seed).Run(&trace);
+  if (!trace.Close()) {
+    *error = trace.error();
+    return false;
+  }
+  return WriteEffective(scenario, directory, error) && WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
+}
+
+int RunSimCommand(const SimOptions& options) {
+  const auto scenario = options.scenario.Load();
+  if (!scenario) return kExitBadConfig;
+  std::string error;
+  RunMetrics metrics;
+  if (options.trace.empty()) {
+    metrics = Simulation(*scenario, options.seed).Run(nullptr);
+  } else if (!SimulateInto(*scenario, options.seed, options.trace, &metrics, &error)) {
+    std::cerr << "armada sim: " << error << '\n';
+    return kExitFailed;
+  }
+  PrintArmTable(metrics, std::cout);
+  if (!options.json.empty() && !WriteJson(ToJson(metrics), options.json, &error)) {
+    std::cerr << "armada sim: " << error << '\n';
+    return kExitFailed;
+  }
+  return metrics.ok ? kExitOk : kExitFailed;
+}
+
+}  // namespace armada

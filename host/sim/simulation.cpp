@@ -1,0 +1,228 @@
+#include "host/sim/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace armada {
+namespace {
+
+constexpr double kBringUp_s = 0.5;  // five heartbeats of the slowest drive
+
+void Copy(const TaskVector& from, double (&to)[3]) { std::copy(from.data(), from.data() + from.size(), to); }
+
+TaskVector TipPosition(const EmulatedArm& bench) {
+  const PlanarPlant::Tip tip = bench.plant().EndEffector();
+  TaskVector x(PlanarArm::kTaskDim);
+  x << tip.x_m[0], tip.x_m[1];
+  return x;
+}
+
+double Rms(double sum_squares, int64_t count) {
+  return count > 0 ? std::sqrt(sum_squares / static_cast<double>(count)) : 0.0;
+}
+
+}  // namespace
+
+Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
+    : scenario_(scenario),
+      seed_(seed),
+      period_s_(scenario.fleet.timing.period_s),
+      period_ns_(static_cast<int64_t>(std::llround(period_s_ * 1e9))),
+      epoch_ns_(1'000'000'000),
+      network_(scenario_, seed) {
+  if (scenario_.leader.kind != LeaderKind::kNone) leader_.emplace(scenario_.leader);
+  const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
+  arms_.reserve(scenario_.fleet.arms.size());
+  for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
+    const ArmStart start = DrawStart(scenario_, i, seed, leader);
+    arms_.push_back(Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
+                        .bench = EmulatedArm(scenario_, i, seed, start, leader, -kBringUp_s),
+                        .record = TrackingRecord(scenario_),
+                        .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
+  }
+}
+
+RunMetrics Simulation::Run(TraceWriter* trace) {
+  BringUp();
+  const int64_t ticks = std::llround(scenario_.seconds / period_s_);
+  for (int64_t k = 0; k < ticks; ++k) {
+    Exchange(k);
+    for (size_t i = 0; i < arms_.size(); ++i) Control(arms_[i], i, k);
+    Observe(k);
+    if (trace != nullptr) Trace(k, trace);
+    AdvancePlants(k);
+  }
+  return Result();
+}
+
+void Simulation::BringUp() {
+  for (int64_t k = -std::llround(kBringUp_s / period_s_); k < 0; ++k) {
+    for (Arm& arm : arms_) {
+      to_drives_.Clear();
+      arm.node.BringUp(&to_drives_);
+      ToDrives(arm, TimeOf(k));
+      ToBoard(arm, NanosecondsOf(k));
+      arm.bench.AdvanceTo(TimeOf(k + 1), &to_board_);
+      ToBoard(arm, NanosecondsOf(k + 1));
+    }
+  }
+}
+
+void Simulation::ToDrives(Arm& arm, double t_s) {
+  for (const CanFrame& frame : to_drives_) arm.bench.OnFrame(t_s, frame, &to_board_);
+  to_drives_.Clear();
+}
+
+void Simulation::ToBoard(Arm& arm, int64_t t_ns) {
+  for (CanFrame frame : to_board_) {
+    frame.stamp_ns = t_ns;
+    arm.node.OnFrame(frame);
+  }
+  to_board_.Clear();
+}
+
+// Everybody sends what is valid at this tick.
+void Simulation::Exchange(int64_t k) {
+  if (leader_) {
+    // The newest state on the leader's own grid.
+    const double rate_hz = scenario_.leader.rate_hz;
+    const double t_s = std::floor(TimeOf(k) * rate_hz + 1e-6) / rate_hz;
+    const Zeta zeta = leader_->At(t_s);
+    leader_t message{};
+    message.stamp_ns = epoch_ns_ + std::llround(t_s * 1e9);
+    message.sequence = ++leader_sequence_;
+    message.path_time_s = t_s;
+    message.task_dim = PlanarArm::kTaskDim;
+    Copy(zeta.x_m, message.x_m);
+    Copy(zeta.v_m_s, message.v_m_s);
+    Copy(zeta.a_m_s2, message.a_m_s2);
+    network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
+  }
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
+  }
+}
+
+// One tick of one board, in the order of the real process.
+void Simulation::Control(Arm& arm, size_t index, int64_t k) {
+  const int64_t tick_ns = NanosecondsOf(k);
+  arm.node.RequestSamples(tick_ns, &to_drives_);
+  ToDrives(arm, TimeOf(k));
+  ToBoard(arm, tick_ns);
+  network_.Deliver(index, k, tick_ns, &arm.node);
+  arm.node.Step(tick_ns, &to_drives_);
+  ToDrives(arm, TimeOf(k));
+  ToBoard(arm, tick_ns);
+  for (const double tau_Nm : arm.node.controller().status().tau_Nm) {
+    arm.torque_max_Nm = std::max(arm.torque_max_Nm, std::abs(tau_Nm));
+  }
+}
+
+TaskVector Simulation::Target(double t_s) const {
+  if (leader_) return leader_->At(t_s).x_m;
+  TaskVector mean = TaskVector::Zero(PlanarArm::kTaskDim);
+  for (const Arm& arm : arms_) mean += arm.node.controller().zeta().x_m;
+  return mean / static_cast<double>(arms_.size());
+}
+
+void Simulation::Observe(int64_t k) {
+  const double t_s = TimeOf(k);
+  if (t_s < scenario_.window_start_s) return;
+  // After Step the estimates are valid at the end of the tick.
+  const Zeta truth = leader_ ? leader_->At(TimeOf(k + 1))
+                             : Zeta{Target(t_s), TaskVector::Zero(PlanarArm::kTaskDim), TaskVector::Zero(PlanarArm::kTaskDim)};
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    Arm& arm = arms_[i];
+    const Zeta& zeta = arm.node.controller().zeta();
+    arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
+    arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
+    arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
+    for (size_t j = 0; j < i; ++j) {
+      estimate_spread_m_ = std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
+    }
+    arm.subtask_squares += std::pow(arm.node.controller().status().subtask_error_rad_s, 2);
+    const SubtaskConfig& subtask = scenario_.fleet.arms[i].control.subtask;
+    if (subtask.kind == SubtaskKind::kPosture) {
+      arm.posture_squares += std::pow(arm.bench.plant().q_rad[static_cast<size_t>(subtask.joint - 1)] - subtask.goal_rad, 2);
+    }
+    ++arm.window_ticks;
+  }
+}
+
+void Simulation::Trace(int64_t k, TraceWriter* trace) {
+  const double t_s = TimeOf(k);
+  const TaskVector target = Target(t_s);
+  if (leader_) trace->Leader(t_s, leader_->At(t_s));
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const Arm& arm = arms_[i];
+    const ArmStatus& status = arm.node.controller().status();
+    const PlanarPlant& plant = arm.bench.plant();
+    const PlanarPlant::Tip tip = plant.EndEffector();
+    TraceRow row;
+    row.t_s = t_s;
+    row.q_rad = Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
+    row.dq_rad_s = Eigen::Map<const Eigen::VectorXd>(plant.dq_rad_s.data(), plant.dof());
+    row.tau_Nm = status.tau_Nm;
+    row.x_m = TipPosition(arm.bench);
+    row.v_m_s = Eigen::Map<const Eigen::Vector2d>(tip.v_m_s.data());
+    row.zeta = status.zeta;
+    row.error_m = (row.x_m - target).norm();
+    row.sigma_min = status.sigma_min;
+    row.manipulability = status.manipulability;
+    row.subtask_error_rad_s = status.subtask_error_rad_s;
+    row.synced = arm.node.controller().estimator().synced();
+    trace->Arm(i, row);
+  }
+}
+
+void Simulation::AdvancePlants(int64_t k) {
+  const int samples = std::max(1, static_cast<int>(std::lround(period_s_ / TrackingRecord::kSamplePeriod_s)));
+  for (int sample = 1; sample <= samples; ++sample) {
+    const double t_s = TimeOf(k) + period_s_ * sample / samples;
+    const TaskVector target = Target(t_s);
+    for (Arm& arm : arms_) {
+      arm.bench.AdvanceTo(t_s, &to_board_);
+      ToBoard(arm, epoch_ns_ + std::llround(t_s * 1e9));
+      arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
+    }
+  }
+}
+
+RunMetrics Simulation::Result() const {
+  RunMetrics metrics;
+  metrics.scenario = scenario_.name;
+  metrics.scenario_file = scenario_.file;
+  metrics.mode = "sim";
+  metrics.law = scenario_.fleet.arms.front().control.law;
+  metrics.estimator = scenario_.fleet.estimator.kind;
+  metrics.seed = seed_;
+  metrics.seconds = scenario_.seconds;
+  metrics.window_start_s = scenario_.window_start_s;
+  metrics.estimate_spread_m = estimate_spread_m_;
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const Arm& arm = arms_[i];
+    const ArmEntry& entry = scenario_.fleet.arms[i];
+    ArmMetrics result;
+    result.id = entry.id;
+    result.dof = entry.arm.dof;
+    result.subtask = entry.control.subtask.kind;
+    result.diverged = arm.bench.diverged();
+    result.settled_s = arm.record.settled_s();
+    result.rms_m = arm.record.rms_m();
+    result.max_m = arm.record.max_m();
+    result.estimator_rms = {Rms(arm.estimator_squares.x_m, arm.window_ticks),
+                            Rms(arm.estimator_squares.v_m_s, arm.window_ticks),
+                            Rms(arm.estimator_squares.a_m_s2, arm.window_ticks)};
+    result.torque_max_Nm = arm.torque_max_Nm;
+    result.saturated_ticks = arm.node.controller().saturated_ticks();
+    result.parameter_error = (arm.node.controller().theta_hat() - arm.theta).norm() / arm.theta.norm();
+    if (result.subtask != SubtaskKind::kNone) result.subtask_rms_rad_s = Rms(arm.subtask_squares, arm.window_ticks);
+    if (result.subtask == SubtaskKind::kPosture) result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
+    result.state = NameOf(arm.node.state());
+    metrics.arms.push_back(std::move(result));
+  }
+  metrics.Judge(scenario_.criterion);
+  return metrics;
+}
+
+}  // namespace armada

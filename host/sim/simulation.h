@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "firmware/app/arm_node.h"
+#include "hil/emulated_arm.h"
+#include "hil/tracking_record.h"
+#include "host/metrics.h"
+#include "host/sim/trace_writer.h"
+#include "host/sim/virtual_network.h"
+
+namespace armada {
+
+/// A scenario in virtual time and in one thread: every arm's whole ArmNode with its drive and message codecs, its emulated
+/// bench, and the network between. The same scenario and seed give the same bytes.
+class Simulation {
+ public:
+  Simulation(const ScenarioConfig& scenario, uint64_t seed);
+
+  /// Runs to the end. `trace` may be null.
+  RunMetrics Run(TraceWriter* trace);
+
+ private:
+  struct Arm {
+    ArmNode node;
+    EmulatedArm bench;
+    TrackingRecord record;
+    ParameterVector theta;  ///< true parameters
+    EstimatorRms estimator_squares{};
+    double subtask_squares = 0.0;
+    double posture_squares = 0.0;
+    int64_t window_ticks = 0;
+    double torque_max_Nm = 0.0;
+  };
+
+  void BringUp();
+  void Exchange(int64_t k);
+  void Control(Arm& arm, size_t index, int64_t k);
+  /// Frames from the drives to the board, and what it sends to the drives.
+  void ToBoard(Arm& arm, int64_t t_ns);
+  void ToDrives(Arm& arm, double t_s);
+  void Observe(int64_t k);
+  void Trace(int64_t k, TraceWriter* trace);
+  void AdvancePlants(int64_t k);
+  /// Where the end effectors should be: the leader, or without one the mean of the estimates.
+  TaskVector Target(double t_s) const;
+  RunMetrics Result() const;
+
+  double TimeOf(int64_t k) const { return static_cast<double>(k) * period_s_; }
+  int64_t NanosecondsOf(int64_t k) const { return epoch_ns_ + k * period_ns_; }
+
+  ScenarioConfig scenario_;
+  uint64_t seed_;
+  double period_s_;
+  int64_t period_ns_;
+  int64_t epoch_ns_;
+  std::optional<LeaderPath> leader_;
+  VirtualNetwork network_;
+  std::vector<Arm> arms_;
+  FrameList to_board_;
+  FrameList to_drives_;
+  int64_t leader_sequence_ = 0;
+  double estimate_spread_m_ = 0.0;
+};
+
+}  // namespace armada

@@ -1,0 +1,304 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "host/check/bus_load.h"
+#include "host/check/check_output.h"
+#include "host/check/check_result.h"
+
+namespace armada {
+namespace {
+
+ArmEntry Arm(int id, const std::vector<LinkConfig>& links) {
+  ArmEntry entry;
+  entry.id = id;
+  entry.arm.dof = static_cast<int>(links.size());
+  std::copy(links.begin(), links.end(), entry.arm.links.begin());
+  entry.bus = "udp:239.0.0.1:" + std::to_string(5000 + id);
+  for (int node_id = 1; node_id <= entry.arm.dof; ++node_id) {
+    entry.joints.push_back({.node_id = node_id, .torque_limit_Nm = entry.arm.dof == 2 ? 150.0 : 300.0});
+  }
+  entry.control.gains.Expand(entry.arm.dof, PlanarArm::kTaskDim);
+  return entry;
+}
+
+// Section 4 of the paper: its Table 1, its graph, its leader.
+ScenarioConfig PaperScenario() {
+  ScenarioConfig scenario;
+  FleetConfig& fleet = scenario.fleet;
+  fleet.arms = {Arm(1, {{0.8, 1.4, 0.8, 6}, {0.6, 0.9, 0.45, 3}}),
+                Arm(2, {{1.0, 1.2, 0.7, 2}, {0.8, 1.1, 0.5, 3}}),
+                Arm(3, {{0.5, 1.1, 0.4, 5}, {0.8, 1.3, 0.6, 3}}),
+                Arm(4, {{1.5, 1.1, 0.6, 5}, {0.8, 1.2, 0.6, 4}}),
+                Arm(5, {{2.3, 1.0, 0.4, 5}, {0.8, 1.2, 0.7, 3}}),
+                Arm(6, {{0.8, 0.8, 0.4, 4}, {1.2, 1.1, 0.5, 6}, {1.4, 1.4, 0.7, 5}}),
+                Arm(7, {{1.8, 1.0, 0.6, 5}, {1.2, 1.1, 0.6, 6}, {1.4, 1.2, 0.6, 5}})};
+  fleet.topologies = {{{{1, 2}, {3, 2}, {1, 4}, {3, 4}, {5, 6}}, {{1}, {3}, {5}, {7}}}};
+  scenario.leader.axes = {{1.2, 0.5, 0.5, 0.0}, {1.3, 0.3, 0.5, M_PI / 2}};
+  return scenario;
+}
+
+bool Mentions(const CheckResult& result, Severity severity, const std::string& text) {
+  return std::any_of(result.findings.begin(), result.findings.end(), [&](const Finding& finding) {
+    return finding.severity == severity && finding.text.find(text) != std::string::npos;
+  });
+}
+
+using Cut = std::tuple<int, int, std::vector<int>>;
+std::vector<Cut> CutsOf(const TopologyCheck& topology) {
+  std::vector<Cut> cuts;
+  for (const SingleCut& cut : topology.single_cuts) cuts.emplace_back(cut.from_id, cut.to_id, cut.cut_ids);
+  return cuts;
+}
+
+TEST(GraphCheck, PapersGraphReachesAllWithinTwoHops) {
+  const auto topologies = CheckTopologies(PaperScenario().fleet);
+  ASSERT_EQ(topologies.size(), 1u);
+  EXPECT_TRUE(topologies[0].holds());
+  EXPECT_EQ(topologies[0].depth, (std::vector<int>{1, 2, 1, 2, 1, 2, 1}));
+}
+
+TEST(GraphCheck, NamesTheLinksThatHaveNoSubstituteAndWhomTheyCutOff) {
+  // Arms 2 and 4 hear both 1 and 3; arm 6 hears 5 only.
+  const auto topologies = CheckTopologies(PaperScenario().fleet);
+  const std::vector<Cut> expected = {
+      {kLeaderId, 1, {1}}, {kLeaderId, 3, {3}}, {kLeaderId, 5, {5, 6}}, {kLeaderId, 7, {7}}, {5, 6, {6}}};
+  EXPECT_EQ(CutsOf(topologies[0]), expected);
+}
+
+TEST(GraphCheck, ArmWithoutAPathIsAnErrorThatNamesIt) {
+  FleetConfig fleet = PaperScenario().fleet;
+  fleet.topologies[0].edges.pop_back();
+  const CheckResult result = BuildCheck(fleet);
+  EXPECT_FALSE(result.ok());
+  EXPECT_TRUE(Mentions(result, Severity::kError, "not reached: 6"));
+}
+
+TEST(GraphCheck, EachTopologyIsJudgedByItself) {
+  FleetConfig fleet = PaperScenario().fleet;
+  fleet.topologies.push_back(fleet.topologies[0]);
+  fleet.topologies[1].pins = {{7}};
+  fleet.topology_period_s = 0.5;
+  const auto topologies = CheckTopologies(fleet);
+  EXPECT_TRUE(topologies[0].holds());
+  EXPECT_FALSE(topologies[1].holds());
+  EXPECT_TRUE(Mentions(BuildCheck(fleet), Severity::kError, "topology 2"));
+}
+
+TEST(GraphCheck, LeaderlessFleetNeedsARootOfItsOwn) {
+  FleetConfig fleet = PaperScenario().fleet;
+  fleet.estimator.leaderless = true;
+  fleet.arms.resize(3);
+  fleet.topologies = {{{{2, 1}, {2, 3}}, {}}};
+  auto topologies = CheckTopologies(fleet);
+  EXPECT_TRUE(topologies[0].holds());
+  EXPECT_EQ(topologies[0].root_id, 2);
+  EXPECT_EQ(topologies[0].depth, (std::vector<int>{1, 0, 1}));
+  EXPECT_EQ(CutsOf(topologies[0]), (std::vector<Cut>{{2, 1, {1}}, {2, 3, {3}}}));
+
+  fleet.topologies = {{{{1, 2}, {2, 3}, {3, 1}}, {}}};  // a ring: any one link may go
+  topologies = CheckTopologies(fleet);
+  EXPECT_TRUE(topologies[0].holds());
+  EXPECT_TRUE(topologies[0].single_cuts.empty());
+}
+
+TEST(MarginCheck, BetaStandsAgainstTheLeadersBoundsAndGivesTheTimeBound) {
+  const ScenarioConfig scenario = PaperScenario();
+  const EstimatorCheck check = CheckEstimator(scenario, LeaderPath(scenario.leader));
+  EXPECT_TRUE(check.holds());
+  EXPECT_NEAR(check.margins[0].ratio(), 4.0 / (0.5 * M_PI), 1e-12);
+  // Slowest is v: from +-5 around zero to (pi/2, 0), closing at 7 - pi^2/2.
+  EXPECT_NEAR(check.settled_max_s, (5.0 + 0.5 * M_PI) / (7.0 - 0.5 * M_PI * M_PI), 1e-12);
+}
+
+TEST(MarginCheck, StartsNearTheLeaderSettleSooner) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.start.kind = StartKind::kNearLeader;
+  scenario.start.zeta_range = 0.2;
+  const EstimatorCheck check = CheckEstimator(scenario, LeaderPath(scenario.leader));
+  EXPECT_NEAR(check.settled_max_s, 0.2 / (7.0 - 0.5 * M_PI * M_PI), 1e-12);
+}
+
+TEST(MarginCheck, BetaBelowTheLeaderIsAnErrorAndSettlesNever) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.fleet.estimator.beta_2_m_s2 = 4.9;  // the leader's 4.935
+  const CheckResult result = BuildCheck(scenario);
+  EXPECT_FALSE(result.ok());
+  EXPECT_TRUE(Mentions(result, Severity::kError, "beta_2 = 4.900"));
+  EXPECT_TRUE(std::isinf(result.estimator->settled_max_s));
+}
+
+TEST(MarginCheck, KrIsHeldAgainstTheTwoNormOfTheDisturbance) {
+  const CheckResult result = BuildCheck(PaperScenario());
+  EXPECT_TRUE(result.ok()) << "a missed condition is a warning";
+  for (const ArmCheck& arm : result.arms) {
+    EXPECT_NEAR(arm.disturbance->d_2norm_Nm, 40.0 * std::sqrt(arm.dof), 1e-12);
+    EXPECT_EQ(arm.disturbance->holds(), arm.dof == 2);
+    EXPECT_EQ(Mentions(result, Severity::kWarning, "arm " + std::to_string(arm.id) + ": K_r"), arm.dof == 3);
+  }
+}
+
+TEST(MarginCheck, WithoutDisturbanceAnyKrSuffices) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.disturbance.kind = DisturbanceKind::kNone;
+  EXPECT_FALSE(Mentions(BuildCheck(scenario), Severity::kWarning, "K_r"));
+}
+
+TEST(PathCheck, Arm5ComesWithinSixteenMillimetresOfItsReach) {
+  const ScenarioConfig scenario = PaperScenario();
+  const ArmEntry& arm5 = scenario.fleet.arms[4];
+  const PathCheck check = CheckPath(scenario, arm5, LeaderPath(scenario.leader));
+  EXPECT_NEAR(check.reach_outer_m, 0.016, 5e-4);
+  EXPECT_NEAR(check.sigma_min, 0.1152, 1e-3);  // by the law of cosines, at the radius of 2.1841 m
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kWarning, "arm 5: near a singularity"));
+}
+
+// A circle about the base at constant speed turns a two-link arm as a rigid body: the elbow does not move,
+// and all that the torque has to do is nothing. Off the centre the law of cosines gives sigma_min.
+TEST(PathCheck, CircleAboutTheBaseNeedsTheDisturbancesTorqueOnly) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.leader.axes = {{0.0, 1.5, 0.2, M_PI / 2}, {0.0, 1.5, 0.2, 0.0}};
+  const ArmEntry& arm = scenario.fleet.arms[0];  // links of 1.4 and 0.9 m
+  const PathCheck check = CheckPath(scenario, arm, LeaderPath(scenario.leader));
+  EXPECT_NEAR(check.reach_outer_m, 2.3 - 1.5, 1e-9);
+  EXPECT_NEAR(check.reach_inner_m, 1.5 - 0.5, 1e-9);
+  // The elbow carries the centrifugal force, the shoulder nothing: C(q, dq) dq = D_12 sin(q_2) w^2 (0, 1).
+  const double cosine = (1.5 * 1.5 - 1.4 * 1.4 - 0.9 * 0.9) / (2.0 * 1.4 * 0.9);
+  const double w = 2.0 * M_PI * 0.2;
+  const double elbow_Nm = 0.6 * 1.4 * 0.45 * std::sqrt(1.0 - cosine * cosine) * w * w;
+  EXPECT_NEAR(check.torques[0].needed_Nm, 40.0, 0.05);
+  EXPECT_NEAR(check.torques[1].needed_Nm, 40.0 + elbow_Nm, 0.05);
+  EXPECT_LT(check.error_m, 1e-3);
+  // det(J) = l1 l2 sin(q2) = sigma_1 sigma_2, |J|_F^2 = sigma_1^2 + sigma_2^2 = r^2 + l2^2.
+  const double det = 1.4 * 0.9 * std::sqrt(1.0 - cosine * cosine);
+  const double squares = 1.5 * 1.5 + 0.9 * 0.9;
+  EXPECT_NEAR(check.sigma_min, std::sqrt(0.5 * (squares - std::sqrt(squares * squares - 4.0 * det * det))),
+              1e-3);
+}
+
+TEST(PathCheck, RestingArmNeedsTheTorqueOfGravity) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.disturbance.kind = DisturbanceKind::kNone;
+  scenario.leader = {};
+  scenario.leader.kind = LeaderKind::kWaypoints;
+  scenario.leader.waypoints_m = {{1.4, 0.9}};
+  ArmEntry arm = scenario.fleet.arms[0];
+  arm.arm.gravity_m_s2 = 9.81;
+  const PathCheck check = CheckPath(scenario, arm, LeaderPath(scenario.leader));
+  // One of the two elbows: first link along x, second up, its centre of mass above the elbow.
+  const double shoulder_Nm = 9.81 * (0.8 * 0.8 + 0.6 * 1.4);
+  EXPECT_GE(check.torques[0].needed_Nm, shoulder_Nm - 1e-3);
+  EXPECT_GT(check.torques[1].needed_Nm, 0.0);
+  EXPECT_LT(check.error_m, 1e-6);
+}
+
+TEST(PathCheck, LeaderBeyondTheReachIsAnErrorThatSaysByHowMuch) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.leader.axes = {{2.4, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}};
+  const CheckResult result = BuildCheck(scenario);
+  EXPECT_FALSE(result.ok());
+  EXPECT_TRUE(Mentions(result, Severity::kError, "arm 1: the leader goes 100.0 mm beyond"));
+  EXPECT_FALSE(Mentions(result, Severity::kError, "arm 6"));  // reaches 3.3 m
+}
+
+TEST(PathCheck, LimitBelowTheNeedIsAWarning) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.fleet.arms[1].joints[1].torque_limit_Nm = 41.0;
+  const CheckResult result = BuildCheck(scenario);
+  EXPECT_TRUE(Mentions(result, Severity::kWarning, "arm 2: joint 2 needs"));
+  EXPECT_EQ(result.arms[1].path->WorstJoint(), 1u);
+}
+
+TEST(BusLoad, FramesAreAsLongAsStuffingMakesThem) {
+  CanFrame frame;
+  const auto bits = [&](uint8_t length) {
+    frame.length = length;
+    return WorstFrameBits(frame);
+  };
+  EXPECT_EQ(bits(8), 135);
+  EXPECT_EQ(bits(4), 95);
+  EXPECT_EQ(bits(0), 55);
+  frame.remote = true;
+  EXPECT_EQ(bits(8), 55) << "a remote frame carries no data";
+  frame.remote = false;
+  frame.extended = true;
+  EXPECT_EQ(bits(8), 160);
+}
+
+TEST(BusLoad, CountsWhatAJointAsksAnswersAndGetsEachTick) {
+  const FleetConfig fleet = PaperScenario().fleet;
+  // Request 55, answer 135, torque of 4 bytes 95 bits at 100 Hz; heartbeat of 135 at 10 Hz.
+  constexpr double kJoint = (100.0 * (55 + 135 + 95) + 10.0 * 135) / 1e6;
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[0], 0.01, 0.0), 2 * kJoint, 1e-12);
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], 0.01, 0.0), 3 * kJoint, 1e-12);
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], 0.01, 0.02), 3 * (kJoint + 50 * 135 / 1e6), 1e-12);
+}
+
+TEST(BusLoad, MoreThanABusCarriesIsAnError) {
+  FleetConfig fleet = PaperScenario().fleet;
+  fleet.timing.period_s = 0.0005;
+  const CheckResult result = BuildCheck(fleet);
+  EXPECT_TRUE(Mentions(result, Severity::kError, "arm 6: its bus"));
+  EXPECT_FALSE(result.ok());
+}
+
+TEST(CheckResult, FleetAloneIsCheckedForWhatItSays) {
+  const CheckResult result = BuildCheck(PaperScenario().fleet);
+  EXPECT_TRUE(result.ok());
+  EXPECT_FALSE(result.estimator.has_value());
+  EXPECT_FALSE(result.arms[0].path.has_value());
+}
+
+TEST(CheckResult, LeaderlessScenarioHasNoPathAndNoBoundsToMeet) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.leader.kind = LeaderKind::kNone;
+  scenario.fleet.estimator.leaderless = true;
+  scenario.fleet.topologies = {{{{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 7}}, {}}};
+  const CheckResult result = BuildCheck(scenario);
+  EXPECT_TRUE(result.ok());
+  EXPECT_FALSE(result.estimator.has_value());
+  EXPECT_EQ(result.topologies[0].root_id, 1);
+}
+
+TEST(CheckOutput, TextFitsOnAPageAndItsTablesAreAligned) {
+  std::ostringstream out;
+  PrintText(BuildCheck(PaperScenario()), out);
+  std::istringstream lines(out.str());
+  std::vector<size_t> arm_rows;
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    EXPECT_LE(line.size(), 160u) << line;
+    if (line.starts_with("    ") && line.size() > 5 && std::isdigit(line[4]) && line[5] == ' ')
+      arm_rows.push_back(line.size());
+  }
+  EXPECT_LE(count, 60);
+  ASSERT_EQ(arm_rows.size(), 7u);
+  EXPECT_EQ(arm_rows, std::vector<size_t>(7, arm_rows[0]));
+}
+
+TEST(CheckOutput, JsonSaysTheSame) {
+  const CheckResult result = BuildCheck(PaperScenario());
+  std::ostringstream out;
+  PrintJson(result, out);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json["ok"], true);
+  EXPECT_EQ(json["topologies"][0]["depth"]["6"], 2);
+  EXPECT_EQ(json["topologies"][0]["single_cuts"][2]["cut_off"], (std::vector<int>{5, 6}));
+  EXPECT_EQ(json["arms"].size(), 7u);
+  EXPECT_EQ(json["arms"][4]["reach_outer_m"], result.arms[4].path->reach_outer_m);
+  EXPECT_EQ(json["arms"][6]["K_r_suffices"], false);
+  EXPECT_EQ(json["findings"].size(), result.findings.size());
+}
+
+TEST(CheckOutput, LeaderAtRestGivesNoRatioInJson) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.leader.axes = {{1.2, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+  std::ostringstream out;
+  PrintJson(BuildCheck(scenario), out);
+  EXPECT_TRUE(nlohmann::json::parse(out.str())["estimator"]["ratio"][0].is_null());
+}
+
+}  // namespace
+}  // namespace armada

@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# States what ./run promises, with stand-ins for apt-get, dpkg-query and cmake: nothing is installed or built.
+# usage: run_script_test.sh RUN_SCRIPT
+set -euo pipefail
+
+run_script=$(readlink -f "$1")
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+mkdir -p "$box/bin" "$box/project"
+cp "$run_script" "$box/project/run"
+cd "$box"
+
+stand_in() { # NAME, body on standard input
+  { echo '#!/bin/bash'; echo "box=$box"; cat; } >"$box/bin/$1"
+  chmod +x "$box/bin/$1"
+}
+# All packages are there but those listed in the file `missing`.
+stand_in dpkg-query <<'END'
+for name in "${@:4}"; do grep -qx "$name" "$box/missing" || echo "$name installed"; done
+END
+# Notes its calls; fails as often as the file `failures` says.
+stand_in apt-get <<'END'
+echo "$DEBIAN_FRONTEND $*" >>"$box/apt_calls"
+if [[ $* == *install* && -s $box/failures ]]; then
+  sed -i 1d "$box/failures"
+  echo 'E: Unable to locate package'
+  exit 1
+fi
+END
+# Builds programs that note their arguments; `armada run` exits as the file `run_exit_code` says.
+stand_in cmake <<'END'
+echo "$*" >>"$box/cmake_calls"
+[[ ! -f $box/build_is_broken ]] || { echo '[1/2] Building'; echo 'a.cpp:1: error: broken'; exit 1; }
+mkdir -p build/release/bin
+cat >build/release/bin/armada <<'PROGRAM'
+#!/bin/bash
+echo "armada $*"
+[[ $1 != run ]] || exit "$(cat run_exit_code)"
+PROGRAM
+chmod +x build/release/bin/armada
+END
+stand_in sudo <<'END'
+exec "$@"
+END
+export PATH="$box/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+
+# given MISSING_PACKAGES APT_FAILURES RUN_EXIT_CODE: a fresh checkout in these circumstances.
+given() {
+  rm -rf project/build project/out apt_calls cmake_calls build_is_broken
+  tr ' ' '\n' <<<"$1" >missing
+  seq "$2" >failures
+  echo "$3" >project/run_exit_code
+  : >apt_calls
+}
+
+# when ARGUMENT...: runs the script without input, from another folder; leaves $code and the file `output`.
+when() {
+  code=0
+  (cd / && "$box/project/run" "$@") </dev/null >output 2>&1 || code=$?
+}
+
+failed_checks=0
+check() { # DESCRIPTION CONDITION...
+  "${@:2}" || {
+    echo "FAILED: $1"
+    sed 's/^/  | /' output
+    failed_checks=$((failed_checks + 1))
+  }
+}
+says() { grep -qF -- "$1" output; }
+silent_about() { ! says "$1"; }
+
+given '' 0 0
+when dance
+check 'an unknown command is a usage error' test "$code" = 2
+check 'and its message names what there is' says "unknown command 'dance'; there are: build, demo, test, help"
+when test -R
+check '-R without a pattern is a usage error' test "$code" = 2
+when build now
+check 'build takes no arguments' test "$code" = 2
+when help
+check 'help succeeds' test "$code" = 0
+check 'none of them installs or builds anything' test ! -s apt_calls -a ! -e cmake_calls
+
+when build
+check 'build succeeds' test "$code" = 0
+check 'and calls no apt-get when nothing is missing' test ! -s apt_calls
+check 'and makes the programs, not the tests' \
+  grep -qx -- '--build --preset release --target bin/armada bin/armada-arm bin/armada-leader bin/armada-hil' cmake_calls
+
+given 'cmake gnuplot-nox' 0 0
+when build
+check 'a missing package is named with its reason' says 'cmake                configures the build'
+check 'packages that are there are not' silent_about 'ninja-build'
+check 'only missing ones are installed, with no questions and no extras' grep -qx \
+  'noninteractive -q -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends cmake gnuplot-nox' apt_calls
+check 'test tools are not needed to build' silent_about 'clang-tidy'
+
+given 'cmake' 1 0
+when build
+check 'a package that is not found is tried again' test "$code" = 0
+check 'with fresh lists' test "$(cut -d ' ' -f 5 apt_calls | xargs)" = 'install update install'
+
+given 'cmake' 2 0
+when build
+check 'a second failure is final' test "$code" = 1
+check 'and shows what apt-get said' says 'Unable to locate package'
+check 'and where all of it is' says 'out/setup.log'
+check 'and builds nothing' test ! -e cmake_calls
+
+given '' 0 0
+touch build_is_broken
+when build
+check 'a broken build fails' test "$code" = 1
+check 'and shows the error' says 'a.cpp:1: error: broken'
+check 'without the progress lines' silent_about '[1/2]'
+
+given '' 0 0
+when demo --seed 7
+check 'the demo runs the paper for 20 s with further options' \
+  says 'armada run hil/scenarios/paper.toml --seconds 20 --out out/demo --seed 7'
+check 'and reports' says 'armada report out/demo'
+check 'and succeeds' test "$code" = 0
+
+given '' 0 1
+when demo
+check 'a demo that misses its criterion fails' test "$code" = 1
+check 'but is reported' says 'armada report out/demo'
+
+given '' 0 78
+when demo
+check 'a configuration error is passed on' test "$code" = 78
+check 'and not reported' silent_about 'armada report'
+
+((failed_checks == 0)) || exit 1
+echo 'all as promised'

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+
+#include "firmware/link/messages.h"
+
+namespace armada {
+
+// The messages whose bytes are in golden_bytes.h; golden_bytes.py makes the same ones.
+
+inline void Set(double (&to)[3], double x, double y, double z) {
+  to[0] = x;
+  to[1] = y;
+  to[2] = z;
+}
+
+inline leader_t GoldenLeader() {
+  leader_t message{};
+  message.stamp_ns = 0x0102030405060708;
+  message.sequence = 1;
+  message.path_time_s = 0.25;
+  message.task_dim = 2;
+  Set(message.x_m, 1.5, -2.0, 0.0);
+  Set(message.v_m_s, 0.5, 4.0, 0.0);
+  Set(message.a_m_s2, -8.0, 0.125, 0.0);
+  return message;
+}
+
+inline estimate_t GoldenEstimate() {
+  estimate_t message{};
+  message.stamp_ns = 1'000'000'007;
+  message.sequence = 258;
+  message.arm_id = 7;
+  message.task_dim = 3;
+  message.agreement = 0x0102;
+  message.leader_age_s = -1.0F;
+  Set(message.x_m, 1.0, 2.0, 3.0);
+  Set(message.v_m_s, -1.0, -2.0, -3.0);
+  Set(message.a_m_s2, 0.5, 0.25, 0.125);
+  return message;
+}
+
+inline telemetry_t GoldenTelemetry() {
+  telemetry_t message{};
+  message.stamp_ns = 2'000'000'000;
+  message.sequence = 3;
+  message.arm_id = 6;
+  message.dof = 7;
+  message.task_dim = 2;
+  message.parameter_count = 35;
+  message.state = 4;
+  message.synced = 1;
+  std::iota(std::begin(message.q_rad), std::end(message.q_rad), 1.0);
+  std::iota(std::begin(message.dq_rad_s), std::end(message.dq_rad_s), 11.0);
+  std::iota(std::begin(message.tau_Nm), std::end(message.tau_Nm), 21.0);
+  std::iota(std::begin(message.d_hat_Nm), std::end(message.d_hat_Nm), 31.0);
+  std::iota(std::begin(message.theta_hat), std::end(message.theta_hat), 100.0);
+  Set(message.x_m, 0.5, 1.5, 0.0);
+  message.error_m = 0.25;
+  message.subtask_error_rad_s = 0.75;
+  message.sigma_min = 0.125;
+  message.saturated_ticks = 1;
+  message.missed_ticks = 2;
+  message.wakeup_lateness_us = -3;
+  message.compute_us = 4;
+  message.sample_to_torque_us = 5;
+  message.heap_allocations = 6;
+  message.page_faults = 7;
+  message.can_sent = 8;
+  message.can_received = 9;
+  message.can_dropped = 10;
+  message.lcm_received = 11;
+  message.lcm_rejected = 12;
+  return message;
+}
+
+}  // namespace armada
