@@ -4,8 +4,9 @@
 usage: cached_clang_tidy.py BUILD_DIR CACHE_DIR
 
 BUILD_DIR is an up-to-date Ninja build with compile_commands.json. A source that passes leaves an empty file in
-CACHE_DIR named after everything the verdict depends on: its compile command, .clang-tidy, clang-tidy's version and
-the contents of every file the compiler read for it (Ninja's record). Findings go to standard error, exit code 1.
+CACHE_DIR named after everything the verdict depends on: its compile command, the .clang-tidy files of its folders,
+clang-tidy's version and the contents of every file the compiler read for it (Ninja's record). Findings go to standard
+error, exit code 1.
 """
 
 import concurrent.futures
@@ -54,8 +55,9 @@ def main():
     read = files_read(build)
 
     def passed_marker(source, command):
-        parts = [version, digest(ROOT / ".clang-tidy"), command]
-        parts += [f"{path} {digest(path)}" for path in read[source]]
+        configs = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
+        inputs = [config for config in configs if config.exists()] + read[source]
+        parts = [version, command] + [f"{path} {digest(path)}" for path in inputs]
         return cache / hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
     def check(source):
@@ -67,7 +69,9 @@ def main():
     changed = [source for source, marker in markers.items() if not marker.exists()]
     findings = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for source, result in zip(changed, pool.map(check, changed)):
+        for number, (source, result) in enumerate(zip(changed, pool.map(check, changed)), start=1):
+            if sys.stderr.isatty():
+                print(f"\r\033[Kclang-tidy {number}/{len(changed)}", end="\r", file=sys.stderr)
             if result.returncode == 0:
                 markers[source].touch()
             else:

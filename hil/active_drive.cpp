@@ -17,8 +17,8 @@ std::optional<int> NodeOfHeartbeat(const CanFrame& frame) {
 
 }  // namespace
 
-std::optional<ActiveDrive> FindActiveDrive(const std::vector<std::unique_ptr<CanBus>>& buses, int64_t listen_ns,
-                                           HilClock* clock) {
+std::optional<ActiveDrive> FindActiveDrive(const std::vector<std::unique_ptr<CanBus>>& buses,
+                                           int64_t listen_ns, HilClock* clock) {
   const int64_t end_ns = clock->Now() + listen_ns;
   while (clock->Now() < end_ns && clock->WaitUntil(end_ns)) {
     for (size_t i = 0; i < buses.size(); ++i) {

@@ -15,10 +15,10 @@ struct ActiveDrive {
   int node_id = 0;
 };
 
-/// Listens to all buses for `listen_ns` and returns the first drive whose heartbeat is heard, if there is one: an emulation
-/// beside it would answer the same requests with the state of another plant. Frames of boards do not count; what
-/// is heard is thrown away. Ends early when the run is asked to end.
-std::optional<ActiveDrive> FindActiveDrive(const std::vector<std::unique_ptr<CanBus>>& buses, int64_t listen_ns,
-                                           HilClock* clock);
+/// Listens to all buses for `listen_ns` and returns the first drive whose heartbeat is heard, if there is
+/// one: an emulation beside it would answer the same requests with the state of another plant. Frames of
+/// boards do not count; what is heard is thrown away. Ends early when the run is asked to end.
+std::optional<ActiveDrive> FindActiveDrive(const std::vector<std::unique_ptr<CanBus>>& buses,
+                                           int64_t listen_ns, HilClock* clock);
 
 }  // namespace armada

@@ -24,13 +24,14 @@ constexpr unsigned kFdErrorState = 2;
 
 }  // namespace
 
-size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFrame& frame, std::span<char> line) {
+size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFrame& frame,
+                        std::span<char> line) {
   const uint32_t id = frame.error ? frame.id | kErrorFlag : frame.id;
   const int id_digits = frame.extended || frame.error ? 8 : 3;
-  size_t size = static_cast<size_t>(
-      std::snprintf(line.data(), line.size(), "(%010lld.%06lld) %.*s %0*X#", static_cast<long long>(time_ns / kNsPerS),
-                    static_cast<long long>(time_ns % kNsPerS / 1000), static_cast<int>(channel.size()), channel.data(),
-                    id_digits, id));
+  size_t size = static_cast<size_t>(std::snprintf(
+      line.data(), line.size(), "(%010lld.%06lld) %.*s %0*X#", static_cast<long long>(time_ns / kNsPerS),
+      static_cast<long long>(time_ns % kNsPerS / 1000), static_cast<int>(channel.size()), channel.data(),
+      id_digits, id));
   if (frame.remote) {
     line[size++] = 'R';
     if (frame.length > 0) line[size++] = static_cast<char>('0' + frame.length);
@@ -38,7 +39,8 @@ size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFram
     constexpr char kHex[] = "0123456789ABCDEF";
     if (frame.fd) {
       line[size++] = '#';
-      line[size++] = kHex[(frame.bitrate_switch ? kFdBitrateSwitch : 0) | (frame.error_state_indicator ? kFdErrorState : 0)];
+      line[size++] = kHex[(frame.bitrate_switch ? kFdBitrateSwitch : 0) |
+                          (frame.error_state_indicator ? kFdErrorState : 0)];
     }
     for (size_t i = 0; i < frame.length; ++i) {
       line[size++] = kHex[frame.data[i] >> 4];
@@ -49,8 +51,8 @@ size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFram
   return size;
 }
 
-std::unique_ptr<CanLog> CanLog::Create(const std::string& path, std::string_view channel, int64_t wall_offset_ns,
-                                       std::string* error) {
+std::unique_ptr<CanLog> CanLog::Create(const std::string& path, std::string_view channel,
+                                       int64_t wall_offset_ns, std::string* error) {
   UniqueFd file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!file.valid()) {
     *error = "cannot write " + path + ": " + std::strerror(errno);

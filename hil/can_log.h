@@ -19,24 +19,26 @@ namespace armada {
 /// Longest line that FormatCanLogLine writes, for channel names of at most 15 characters.
 inline constexpr size_t kMaxCanLogLine = 192;
 
-/// A frame as one line of candump's log format, `(seconds.micros) channel ID#DATA`, which can-utils and python-can read:
-/// remote frames as ID#R<length>, CAN FD as ID##<flags>DATA. Returns the line's length, its newline included. @pre `line`
-/// has room for kMaxCanLogLine.
-size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFrame& frame, std::span<char> line);
+/// A frame as one line of candump's log format, `(seconds.micros) channel ID#DATA`, which can-utils and
+/// python-can read: remote frames as ID#R<length>, CAN FD as ID##<flags>DATA. Returns the line's length, its
+/// newline included. @pre `line` has room for kMaxCanLogLine.
+size_t FormatCanLogLine(int64_t time_ns, std::string_view channel, const CanFrame& frame,
+                        std::span<char> line);
 
-/// The frames of one bus, on their way from a real-time loop to a file. The loop must never wait for a disk, and how long
-/// a disk takes has no bound, so the two meet in a ring of fixed size and nowhere else: the loop puts a frame in or,
-/// when the writer is a whole ring behind, counts it as dropped. No lock is shared, so the loop cannot inherit the
-/// writer's low priority either.
+/// The frames of one bus, on their way from a real-time loop to a file. The loop must never wait for a disk,
+/// and how long a disk takes has no bound, so the two meet in a ring of fixed size and nowhere else: the loop
+/// puts a frame in or, when the writer is a whole ring behind, counts it as dropped. No lock is shared, so
+/// the loop cannot inherit the writer's low priority either.
 class CanLog {
  public:
   /// What a saturated bus of 1 Mbit/s carries in about a second.
   static constexpr size_t kCapacity = 8192;
 
-  /// Creates the file, or empties it. `wall_offset_ns`: from the frames' clock to the wall clock of the log, fixed for
-  /// the whole log so that stamps never step. Null, and the reason in `error`, when it cannot be written.
-  static std::unique_ptr<CanLog> Create(const std::string& path, std::string_view channel, int64_t wall_offset_ns,
-                                        std::string* error);
+  /// Creates the file, or empties it. `wall_offset_ns`: from the frames' clock to the wall clock of the log,
+  /// fixed for the whole log so that stamps never step. Null, and the reason in `error`, when it cannot be
+  /// written.
+  static std::unique_ptr<CanLog> Create(const std::string& path, std::string_view channel,
+                                        int64_t wall_offset_ns, std::string* error);
 
   /// The loop's side: takes the frame or counts it as dropped; neither waits nor allocates.
   void Record(int64_t stamp_ns, const CanFrame& frame);

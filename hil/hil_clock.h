@@ -12,7 +12,8 @@ class HilClock {
   /// CLOCK_MONOTONIC, ns.
   virtual int64_t Now() = 0;
 
-  /// Waits until `deadline_ns`, or until a bus has input; may return earlier. False once the run is asked to end.
+  /// Waits until `deadline_ns`, or until a bus has input; may return earlier. False once the run is asked to
+  /// end.
   virtual bool WaitUntil(int64_t deadline_ns) = 0;
 };
 

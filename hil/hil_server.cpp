@@ -49,57 +49,53 @@ HilEnd HilServer::Run(double seconds) {
   const int64_t end_ns = epoch_ns_ + std::llround(seconds * 1e9);
   while (clock_->WaitUntil(std::min(next_tick_ns_, end_ns))) {
     const int64_t now_ns = clock_->Now();
-    for (; next_tick_ns_ <= std::min(now_ns, end_ns); next_tick_ns_ += kTick_ns) pacing_.Add(now_ns - next_tick_ns_);
+    const int64_t until_ns = std::min(now_ns, end_ns);
+    for (; next_tick_ns_ <= until_ns; next_tick_ns_ += kTick_ns) pacing_.Add(now_ns - next_tick_ns_);
     for (Arm& arm : arms_) {
-      if (Serve(arm, now_ns, end_ns) == BusStatus::kDown) return HilEnd::kBusDown;
+      TakeFrames(arm, end_ns);
+      AdvanceTo(arm, until_ns);
+      if (arm.bus_down) return HilEnd::kBusDown;
     }
     if (now_ns >= end_ns) return HilEnd::kDone;
   }
   return HilEnd::kStopped;
 }
 
-BusStatus HilServer::Serve(Arm& arm, int64_t now_ns, int64_t end_ns) {
+void HilServer::TakeFrames(Arm& arm, int64_t end_ns) {
+  CanFrame frame;
   for (int i = 0; i < kMostFramesInTurn; ++i) {
-    CanFrame frame;
     const BusStatus status = arm.bus->Receive(0, &frame);
-    if (status == BusStatus::kDown) return status;
-    if (status != BusStatus::kOk) break;
-    if (arm.log != nullptr) arm.log->Record(frame.stamp_ns, frame);
-    const int64_t t_ns = std::clamp(frame.stamp_ns, arm.time_ns, std::max(arm.time_ns, end_ns));
-    if (AdvanceTo(arm, t_ns) == BusStatus::kDown) return BusStatus::kDown;
+    if (status == BusStatus::kDown) arm.bus_down = true;
+    if (status != BusStatus::kOk) return;
+    const int64_t t_ns = std::max(arm.time_ns, std::min(frame.stamp_ns, end_ns));
+    AdvanceTo(arm, t_ns);
+    if (arm.log != nullptr) arm.log->Record(t_ns, frame);
     arm.bench.OnFrame(FleetTime(t_ns), frame, &out_);
-    if (SendReplies(arm) == BusStatus::kDown) return BusStatus::kDown;
+    MoveBench(arm, t_ns);
   }
-  return AdvanceTo(arm, std::min(now_ns, end_ns));
 }
 
 // A frame may have been taken that came after the loop looked at the clock: then time is ahead, and stays.
-BusStatus HilServer::AdvanceTo(Arm& arm, int64_t t_ns) {
+void HilServer::AdvanceTo(Arm& arm, int64_t t_ns) {
   for (; arm.next_tick_ns <= t_ns; arm.next_tick_ns += kTick_ns) {
-    if (MoveBench(arm, arm.next_tick_ns) == BusStatus::kDown) return BusStatus::kDown;
+    MoveBench(arm, arm.next_tick_ns);
     Sample(arm);
   }
-  return t_ns > arm.time_ns ? MoveBench(arm, t_ns) : BusStatus::kOk;
+  if (t_ns > arm.time_ns) MoveBench(arm, t_ns);
 }
 
-BusStatus HilServer::MoveBench(Arm& arm, int64_t t_ns) {
+// Frames go out as soon as there are any. The log has the bench's time for them, so that it stays in order:
+// how much later they went out is pacing's to tell.
+void HilServer::MoveBench(Arm& arm, int64_t t_ns) {
   arm.time_ns = t_ns;
   arm.bench.AdvanceTo(FleetTime(t_ns), &out_);
   if (!arm.released_s && arm.bench.released()) arm.released_s = FleetTime(t_ns);
-  return SendReplies(arm);
-}
-
-// The log has the bench's time for what the drives send, so that it stays in order: how much later the frame went out is
-// pacing's to tell.
-BusStatus HilServer::SendReplies(Arm& arm) {
-  BusStatus worst = BusStatus::kOk;
   for (const CanFrame& frame : out_) {
     const BusStatus status = arm.bus->Send(frame);
-    if (status == BusStatus::kOk && arm.log != nullptr) arm.log->Record(arm.time_ns, frame);
-    if (status == BusStatus::kDown) worst = status;
+    if (status == BusStatus::kDown) arm.bus_down = true;
+    if (status == BusStatus::kOk && arm.log != nullptr) arm.log->Record(t_ns, frame);
   }
   out_.Clear();
-  return worst;
 }
 
 void HilServer::Sample(Arm& arm) {
@@ -121,6 +117,7 @@ std::vector<HilArmResult> HilServer::Results() const {
   for (const Arm& arm : arms_) {
     results.push_back({.id = arm.id,
                        .bus = arm.bus_name,
+                       .bus_down = arm.bus_down,
                        .diverged = arm.bench.diverged(),
                        .released_s = arm.released_s,
                        .record = leader_ ? std::optional(arm.record) : std::nullopt,

@@ -22,22 +22,28 @@ enum class HilEnd { kDone, kStopped, kBusDown };
 struct HilArmResult {
   int id = 0;
   std::string bus;
+  bool bus_down = false;
   bool diverged = false;
-  std::optional<double> released_s;      ///< when the brakes opened; never without every drive in torque mode
-  std::optional<TrackingRecord> record;  ///< none in a leaderless scenario: there is nothing to measure against
+  std::optional<double> released_s;  ///< when the brakes opened; never without every drive in torque mode
+  std::optional<TrackingRecord>
+      record;  ///< none in a leaderless scenario: there is nothing to measure against
   BusCounters counters;
 };
 
-/// The fleet's arms and drives in real time, on their buses, in one thread. An arm's time goes on with the frames that
-/// come in, each taken at its time of reception, and with the milliseconds of the fleet's clock, in each of which its error
-/// is sampled. A server that wakes late therefore computes the motion it would have computed in time, sample for sample;
-/// only its answers are late, and pacing() tells by how much. Allocates in the constructor only.
+/// The fleet's arms and drives in real time, on their buses, in one thread. An arm's time goes on with the
+/// frames that come in, each taken at its time of reception, and with the milliseconds of the fleet's clock,
+/// in each of which its error is sampled. A server that wakes late therefore computes the motion it would
+/// have computed in time, sample for sample; only its answers are late, and pacing() tells by how much.
+/// Allocates in the constructor only.
 class HilServer {
  public:
-  /// Switches the benches on, now. `buses`, one an arm in the fleet's order, and `logs`, as many or none, outlive the
-  /// object. The fleet's time 0 is `epoch_ns`. @pre now <= epoch_ns
+  /// Switches the benches on, now. `buses`, one an arm in the fleet's order, and `logs`, as many or none,
+  /// outlive the object. The fleet's time 0 is `epoch_ns`. @pre now <= epoch_ns
   HilServer(const ScenarioConfig& scenario, uint64_t seed, int64_t epoch_ns,
-            const std::vector<std::unique_ptr<CanBus>>& buses, const std::vector<CanLog*>& logs, HilClock* clock);
+            const std::vector<std::unique_ptr<CanBus>>& buses, const std::vector<CanLog*>& logs,
+            HilClock* clock);
+  HilServer(const HilServer&) = delete;
+  HilServer& operator=(const HilServer&) = delete;
 
   /// Runs until `seconds` after the epoch, or until the clock says that the run is to end.
   HilEnd Run(double seconds);
@@ -59,13 +65,14 @@ class HilServer {
     int64_t time_ns;  ///< of the bench
     int64_t next_tick_ns;
     std::optional<double> released_s;
+    bool bus_down = false;
   };
 
-  double FleetTime(int64_t t_ns) const { return static_cast<double>(t_ns - epoch_ns_) * 1e-9; }
-  BusStatus Serve(Arm& arm, int64_t now_ns, int64_t end_ns);
-  BusStatus AdvanceTo(Arm& arm, int64_t t_ns);
-  BusStatus MoveBench(Arm& arm, int64_t t_ns);
-  BusStatus SendReplies(Arm& arm);
+  double FleetTime(int64_t t_ns) const { return static_cast<double>(t_ns - epoch_ns_) / 1e9; }
+  void TakeFrames(Arm& arm, int64_t end_ns);
+  /// Goes through every millisecond on the way.
+  void AdvanceTo(Arm& arm, int64_t t_ns);
+  void MoveBench(Arm& arm, int64_t t_ns);
   void Sample(Arm& arm);
 
   int64_t epoch_ns_;

@@ -12,7 +12,8 @@
 
 namespace armada {
 
-std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<CanBus>>& buses, std::string* error) {
+std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<CanBus>>& buses,
+                                             std::string* error) {
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGINT);
@@ -29,7 +30,9 @@ std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<C
   return clock;
 }
 
-int64_t PollClock::Now() { return MonotonicNow(); }
+int64_t PollClock::Now() {
+  return MonotonicNow();
+}
 
 bool PollClock::WaitUntil(int64_t deadline_ns) {
   constexpr int64_t kNsPerS = 1'000'000'000;

@@ -15,9 +15,11 @@ namespace armada {
 /// The machine's clock. Waits in ppoll on every bus; SIGINT and SIGTERM end the run.
 class PollClock final : public HilClock {
  public:
-  /// Blocks the two signals in this thread, and so in the threads that it starts later, and takes them as input
-  /// instead: no handler, and none is missed between two waits. Null, and the reason in `error`, on failure.
-  static std::unique_ptr<PollClock> Create(const std::vector<std::unique_ptr<CanBus>>& buses, std::string* error);
+  /// Blocks the two signals in this thread, and so in the threads that it starts later, and takes them as
+  /// input instead: no handler, and none is missed between two waits. Null, and the reason in `error`, on
+  /// failure.
+  static std::unique_ptr<PollClock> Create(const std::vector<std::unique_ptr<CanBus>>& buses,
+                                           std::string* error);
 
   int64_t Now() override;
   bool WaitUntil(int64_t deadline_ns) override;

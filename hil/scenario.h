@@ -62,7 +62,7 @@ struct StartConfig {
   double q_range_rad = 5.0;
   double dq_range_rad_s = 5.0;
   double zeta_range = 5.0;
-  TaskVector zeta_x_centre_m = TaskVector::Zero(1);  ///< one value stands for all axes until the file is read
+  TaskVector zeta_x_centre_m = TaskVector::Zero(PlanarArm::kTaskDim);
   double theta_hat_max = 5.0;
   double near_leader_m = 0.1;
 

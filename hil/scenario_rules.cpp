@@ -26,15 +26,12 @@ struct Ring {
   double RadiusOf(const TaskVector& x_m) const { return (x_m - base_m).norm(); }
   /// How far a radius lies outside; not above 0 inside.
   double Excess(double radius_m) const { return std::max(inner_m - radius_m, radius_m - outer_m); }
-  std::string Text() const { return ValueText(inner_m) + " to " + ValueText(outer_m) + " m from its base"; }
+  std::string Text() const { return RoundedText(inner_m) + " to " + RoundedText(outer_m) + " m from its base"; }
 
   TaskVector base_m;
   double inner_m = 0.0;
   double outer_m = 0.0;
 };
-
-// For people: a millimetre, a millisecond is enough.
-std::string Rounded(double value) { return ValueText(std::round(value * 1e3) / 1e3); }
 
 void CheckSines(const LeaderConfig& leader, const ConfigCursor& at, Errors* errors) {
   if (leader.axes.size() == size_t{PlanarArm::kTaskDim}) return;
@@ -84,7 +81,7 @@ void CheckBeta(const ScenarioConfig& scenario, const ConfigCursor& fleet_root, E
     if (beta >= kBetaMargin * bound) return;
     Report(fleet_root.At("estimator").At(key),
            "given " + ValueText(beta) + " " + unit + ", allowed by A2 is at least " + ValueText(kBetaMargin) +
-               " times the leader's " + Rounded(bound) + " " + unit + ", " + Rounded(kBetaMargin * bound) + " " + unit,
+               " times the leader's " + RoundedText(bound) + " " + unit + ", " + RoundedText(kBetaMargin * bound) + " " + unit,
            errors);
   };
   const EstimatorConfig& estimator = scenario.fleet.estimator;
@@ -112,8 +109,8 @@ void CheckLeaderInReach(const ScenarioConfig& scenario, const ConfigCursor& root
     }
     if (worst_m <= 0.0) continue;
     Report(root.At("leader"),
-           "out of reach of arm " + std::to_string(entry.id) + ": at t = " + Rounded(worst_s) + " s the leader is " +
-               Rounded(ring.RadiusOf(path.At(worst_s).x_m)) + " m from its base; allowed is " + ring.Text(),
+           "out of reach of arm " + std::to_string(entry.id) + ": at t = " + RoundedText(worst_s) + " s the leader is " +
+               RoundedText(ring.RadiusOf(path.At(worst_s).x_m)) + " m from its base; allowed is " + ring.Text(),
            errors);
   }
 }
@@ -130,7 +127,7 @@ void CheckAgreementInReach(const ScenarioConfig& scenario, const ConfigCursor& r
     if (std::max(ring.Excess(nearest_m), ring.Excess(farthest_m)) <= 0.0) continue;
     Report(root.At("start.zeta_range"),
            "arm " + std::to_string(entry.id) + " may not reach the agreed point: it lies within zeta_range of "
-               "zeta_x_centre_m on each axis, " + Rounded(nearest_m) + " to " + Rounded(farthest_m) +
+               "zeta_x_centre_m on each axis, " + RoundedText(nearest_m) + " to " + RoundedText(farthest_m) +
                " m from the arm's base; allowed is " + ring.Text(),
            errors);
   }
@@ -165,6 +162,12 @@ void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& 
   if (scenario.plant.step_s > scenario.fleet.timing.period_s) {
     Report(root.At("plant.step_s"),
            "given " + ValueText(scenario.plant.step_s) + " s, allowed is at most timing.period_s = " +
+               ValueText(scenario.fleet.timing.period_s) + " s",
+           errors);
+  }
+  if (scenario.drive.watchdog_s > 0.0 && scenario.drive.watchdog_s <= scenario.fleet.timing.period_s) {
+    Report(root.At("drive.watchdog_s"),
+           "given " + ValueText(scenario.drive.watchdog_s) + " s, allowed is 0 (off) or above timing.period_s = " +
                ValueText(scenario.fleet.timing.period_s) + " s",
            errors);
   }

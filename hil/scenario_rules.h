@@ -12,7 +12,7 @@ namespace armada {
 /// Rules that need no fleet: the window, the shape of the leader's path and of the start.
 void CheckScenario(const ScenarioConfig& scenario, const ConfigCursor& root, std::vector<ConfigError>* errors);
 
-/// Rules between scenario and fleet: leader or none, A2, reach, plant step. @pre both are clean by themselves.
+/// Rules between scenario and fleet: leader or none, A2, reach, time steps. @pre both are clean by themselves.
 void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& root, const ConfigCursor& fleet_root,
                             std::vector<ConfigError>* errors);
 

@@ -42,7 +42,9 @@ ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, 
   }
 
   Zeta& zeta = start.controller.zeta;
-  zeta = leader != nullptr && config.kind == StartKind::kNearLeader ? leader->At(0.0) : Zeta::Zero(PlanarArm::kTaskDim);
+  zeta = Zeta::Zero(PlanarArm::kTaskDim);
+  zeta.x_m = config.zeta_x_centre_m;
+  if (leader != nullptr && config.kind == StartKind::kNearLeader) zeta = leader->At(0.0);
   if (config.kind == StartKind::kNearLeader) {
     TaskVector x = zeta.x_m;
     for (double& x_c : x) x_c += draw(-config.near_leader_m, config.near_leader_m);

@@ -137,10 +137,10 @@ int main(int argc, char** argv) {
   app.add_option("SCENARIO", options.scenario, "scenario file")->required();
   app.add_option("--epoch-ns", options.epoch_ns,
                  "fleet's time 0 on CLOCK_MONOTONIC, ns; default: the first message")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(int64_t{1}, armada::kMaxStampNs));
   app.add_option("--seconds", options.seconds,
                  "length of the run from the epoch; default: until SIGINT or SIGTERM")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e9));
   app.add_option("--set", options.sets, "key=value in place of the scenario's; may be repeated")->expected(1);
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));

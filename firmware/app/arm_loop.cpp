@@ -85,7 +85,7 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
   telemetry_.wakeup_lateness_us = Microseconds(woken_ns - tick_ns);
   telemetry_.compute_us = Microseconds(sent_ns - feedback_ns);
   telemetry_.sample_to_torque_us = Microseconds(sent_ns - request_ns);
-  PublishTelemetry(tick_ns);
+  PublishTelemetry();
 }
 
 void ArmLoop::Send() {
@@ -109,8 +109,8 @@ void ArmLoop::TakeWaitingFrames() {
   for (int i = 0; i < kMostPerTick && bus_->Receive(0, &frame) == BusStatus::kOk; ++i) node_->OnFrame(frame);
 }
 
-void ArmLoop::PublishTelemetry(int64_t tick_ns) {
-  node_->FillTelemetry(tick_ns, &telemetry_);
+void ArmLoop::PublishTelemetry() {
+  node_->FillTelemetry(&telemetry_);
   telemetry_.missed_ticks = static_cast<int32_t>(report_.missed_ticks);
   telemetry_.heap_allocations = report_.heap_allocations;
   telemetry_.page_faults = report_.page_faults;

@@ -45,7 +45,7 @@ class ArmLoop {
   int64_t AwaitSamples(int64_t deadline_ns);
   /// Takes what is waiting: heartbeats count, samples from before the request must not.
   void TakeWaitingFrames();
-  void PublishTelemetry(int64_t tick_ns);
+  void PublishTelemetry();
 
   ArmNode* node_;
   CanBus* bus_;

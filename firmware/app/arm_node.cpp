@@ -216,11 +216,11 @@ void ArmNode::Stop(FrameList* out) {
   for (const auto& drive : drives_) drive->Disable(out);
 }
 
-void ArmNode::FillTelemetry(int64_t tick_ns, telemetry_t* telemetry) {
+void ArmNode::FillTelemetry(telemetry_t* telemetry) {
   const ArmStatus& status = controller_.status();
   const ParameterVector& theta_hat = controller_.theta_hat();
   const JointVector d_hat_Nm = controller_.d_hat_Nm();
-  telemetry->stamp_ns = tick_ns;
+  telemetry->stamp_ns = epoch_ns_ + static_cast<int64_t>(input_.sample_s * 1e9 + 0.5);
   telemetry->sequence = ++telemetry_sequence_;
   telemetry->arm_id = static_cast<int8_t>(id_);
   telemetry->dof = static_cast<int8_t>(drives_.size());

@@ -37,7 +37,7 @@ class ArmNode {
   void Step(int64_t tick_ns, FrameList* out);
 
   /// What the tick did, for people; the process adds its own timing.
-  void FillTelemetry(int64_t tick_ns, telemetry_t* telemetry);
+  void FillTelemetry(telemetry_t* telemetry);
 
   /// Drives go to rest in their own way; the node is in kFault until it is started anew.
   void Stop(FrameList* out);

@@ -27,7 +27,6 @@ constexpr uint8_t kFixExt16 = 0xD8;
 constexpr uint8_t kString8 = 0xD9;
 constexpr uint8_t kString32 = 0xDB;
 constexpr uint8_t kArray16 = 0xDC;
-constexpr uint8_t kArray32 = 0xDD;
 constexpr uint8_t kMap16 = 0xDE;
 constexpr uint8_t kMap32 = 0xDF;
 constexpr uint8_t kNegativeFixInt = 0xE0;
@@ -114,16 +113,12 @@ bool MsgpackReader::TakeSize(uint8_t tag, uint8_t first, uint64_t* size) {
 }
 
 bool MsgpackReader::ReadMapHeader(uint32_t* pairs) {
-  uint64_t tag = 0;
-  uint64_t count = 0;
-  if (!TakeBigEndian(1, &tag)) return false;
-  if (IsFixMap(static_cast<uint8_t>(tag))) {
-    count = tag & 0x0F;
-  } else if (tag != kMap16 && tag != kMap32) {
-    return false;
-  } else if (!TakeBigEndian(tag == kMap16 ? 2 : 4, &count)) {
-    return false;
-  }
+  uint64_t head = 0;
+  if (!TakeBigEndian(1, &head)) return false;
+  const auto tag = static_cast<uint8_t>(head);
+  uint64_t count = tag & 0x0F;
+  const bool wide = tag == kMap16 || tag == kMap32;
+  if (!IsFixMap(tag) && !(wide && TakeBigEndian(tag == kMap16 ? 2 : 4, &count))) return false;
   *pairs = static_cast<uint32_t>(count);
   return true;
 }

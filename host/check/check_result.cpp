@@ -22,16 +22,29 @@ CheckResult BuildFleetCheck(const FleetConfig& fleet, double feedback_period_s) 
   return result;
 }
 
+void CollectFindings(const FleetConfig& fleet, CheckResult& result) {
+  for (size_t i = 0; i < result.arms.size(); ++i) {
+    const std::vector<Finding> of_arm = FindingsOf(fleet.arms[i], result.arms[i]);
+    result.findings.insert(result.findings.end(), of_arm.begin(), of_arm.end());
+  }
+  std::stable_sort(result.findings.begin(), result.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+}
+
 }  // namespace
 
 bool CheckResult::ok() const {
-  return std::none_of(findings.begin(), findings.end(),
-                      [](const Finding& finding) { return finding.severity == Severity::kError; });
+  const bool A1 = std::all_of(topologies.begin(), topologies.end(),
+                              [](const TopologyCheck& topology) { return topology.holds(); });
+  const bool A2 = !estimator || estimator->holds();
+  return A1 && A2 && std::none_of(findings.begin(), findings.end(), [](const Finding& finding) {
+           return finding.severity == Severity::kError;
+         });
 }
 
 CheckResult BuildCheck(const FleetConfig& fleet) {
   CheckResult result = BuildFleetCheck(fleet, 0.0);
-  result.findings = Findings(fleet, result);
+  CollectFindings(fleet, result);
   return result;
 }
 
@@ -49,7 +62,7 @@ CheckResult BuildCheck(const ScenarioConfig& scenario) {
       result.arms[i].path = CheckPath(scenario, scenario.fleet.arms[i], leader);
     }
   }
-  result.findings = Findings(scenario.fleet, result);
+  CollectFindings(scenario.fleet, result);
   return result;
 }
 

@@ -28,8 +28,7 @@ struct ArmCheck {
   std::optional<PathCheck> path;                ///< of a scenario with a leader
 };
 
-/// What `armada check` finds out about a fleet, or a scenario, that the loader has taken. All numbers come
-/// from the configuration.
+/// What `armada check` finds out about a fleet or a scenario beyond the rules that the loader enforces.
 struct CheckResult {
   std::string name;
   std::string file;
@@ -38,12 +37,12 @@ struct CheckResult {
   std::vector<TopologyCheck> topologies;
   std::vector<ArmCheck> arms;               ///< in the fleet's order
   std::optional<EstimatorCheck> estimator;  ///< of a scenario with a leader
-  std::vector<Finding> findings;
+  std::vector<Finding> findings;            ///< errors first
 
-  bool ok() const;  ///< no error among the findings
+  bool ok() const;  ///< A1 and A2 hold, and no finding is an error
 };
 
-/// The fleet alone: graph, projection, bus.
+/// The fleet alone: graph and bus.
 CheckResult BuildCheck(const FleetConfig& fleet);
 
 /// The fleet in its scenario: all of it.

@@ -67,10 +67,6 @@ std::string Cuts(const TopologyCheck& topology) {
   return text.empty() ? "none" : text;
 }
 
-std::string Counted(std::ptrdiff_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 void PrintGraph(const CheckResult& result, std::ostream& out) {
   const bool holds = std::all_of(result.topologies.begin(), result.topologies.end(),
                                  [](const TopologyCheck& topology) { return topology.holds(); });
@@ -161,11 +157,7 @@ void PrintText(const CheckResult& result, std::ostream& out) {
   for (const Finding& finding : result.findings) {
     out << (finding.severity == Severity::kError ? "error: " : "warning: ") << finding.text << '\n';
   }
-  const auto errors =
-      std::count_if(result.findings.begin(), result.findings.end(),
-                    [](const Finding& finding) { return finding.severity == Severity::kError; });
-  const auto warnings = static_cast<std::ptrdiff_t>(result.findings.size()) - errors;
-  out << Counted(errors, "error") << ", " << Counted(warnings, "warning") << '\n';
+  out << (result.ok() ? "ok" : "not ok") << '\n';
 }
 
 }  // namespace armada

@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "firmware/app/fleet.h"
 #include "host/check/check_result.h"
 
 namespace armada {
 
-/// What in a result a person must know, one sentence each, errors first. `fleet` is the one that was checked.
-std::vector<Finding> Findings(const FleetConfig& fleet, const CheckResult& result);
+/// What a person must know about one arm, one sentence each. `entry` is the arm that was checked.
+std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm);
 
 /// A number with a fixed count of decimals, for people.
 std::string Fixed(double value, int decimals);

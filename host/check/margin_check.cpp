@@ -11,9 +11,10 @@ double LargestComponent(const TaskVector& vector) {
   return vector.cwiseAbs().maxCoeff();
 }
 
-// Largest |error| of an estimate at the start: around zero in the box, around the leader's own state near it.
-double StartError(const StartConfig& start, const TaskVector& leader) {
-  return start.zeta_range + (start.kind == StartKind::kBox ? LargestComponent(leader) : 0.0);
+// Largest |error| that a part of an estimate can have at the start: the box lies around `centre`, or around
+// the leader's own state near it.
+double StartError(const StartConfig& start, const TaskVector& centre, const TaskVector& leader) {
+  return start.zeta_range + (start.kind == StartKind::kBox ? LargestComponent(leader - centre) : 0.0);
 }
 
 }  // namespace
@@ -30,10 +31,12 @@ EstimatorCheck CheckEstimator(const ScenarioConfig& scenario, const LeaderPath& 
                    BetaMargin{estimator.beta_2_m_s2, bounds.a_m_s2},
                    BetaMargin{estimator.beta_3_m_s3, bounds.jerk_m_s3}};
 
-  const Zeta start = leader.At(0.0);
-  const std::array<double, 3> errors = {StartError(scenario.start, start.x_m),
-                                        StartError(scenario.start, start.v_m_s),
-                                        StartError(scenario.start, start.a_m_s2)};
+  const Zeta at_start = leader.At(0.0);
+  const TaskVector zero = TaskVector::Zero(at_start.x_m.size());
+  const StartConfig& start = scenario.start;
+  const std::array<double, 3> errors = {StartError(start, start.zeta_x_centre_m, at_start.x_m),
+                                        StartError(start, zero, at_start.v_m_s),
+                                        StartError(start, zero, at_start.a_m_s2)};
   for (size_t k = 0; k < errors.size(); ++k) {
     const BetaMargin& margin = check.margins[k];
     const double settled_s =

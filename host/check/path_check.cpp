@@ -9,7 +9,7 @@
 namespace armada {
 namespace {
 
-constexpr double kStep_s = 0.001;
+constexpr double kStep_s = 0.002;
 constexpr double kSettle_s = 5.0;      // from the bent elbow to the path
 constexpr double kMotionMax_s = 60.0;  // of the path, for what costs inverse kinematics
 constexpr int kReachSamplesMax = 200'000;
@@ -28,54 +28,60 @@ void MeasureReach(const PlanarArm& arm, const LeaderPath& leader, double length_
 class PerfectMotion {
  public:
   PerfectMotion(const ArmEntry& entry, const LeaderPath& leader, double elbow_rad)
-      : entry_(entry), leader_(leader), arm_(entry.arm), q_(JointVector::Constant(entry.arm.dof, elbow_rad)) {
+      : control_(entry.control), leader_(leader), arm_(entry.arm) {
+    q_ = JointVector::Constant(arm_.dof(), elbow_rad);
     q_[0] = -entry.arm.base_orientation_rad;
+    t_s_ = -kSettle_s;
+    dq_ = Velocity(t_s_, q_);
+    while (t_s_ < -0.5 * kStep_s) Advance();
+    t_s_ = 0.0;
   }
 
   const PlanarArm& arm() const { return arm_; }
+  double t_s() const { return t_s_; }
   const JointVector& q_rad() const { return q_; }
+  const JointVector& dq_rad_s() const { return dq_; }
 
-  JointVector Velocity(double t_s, const JointVector& q) const {
-    const ControlConfig& control = entry_.control;
-    return ReferenceVelocity(control.reference, control.pseudoinverse, control.subtask, arm_, q,
-                             leader_.At(t_s), true);
-  }
-
-  void Advance(double t_s) {
-    const JointVector middle = q_ + 0.5 * kStep_s * Velocity(t_s, q_);
-    q_ += kStep_s * Velocity(t_s + 0.5 * kStep_s, middle);
+  // One step by the midpoint rule.
+  void Advance() {
+    const JointVector q_middle = q_ + 0.5 * kStep_s * dq_;
+    q_ += kStep_s * Velocity(t_s_ + 0.5 * kStep_s, q_middle);
+    t_s_ += kStep_s;
+    dq_ = Velocity(t_s_, q_);
   }
 
  private:
-  const ArmEntry& entry_;
+  JointVector Velocity(double t_s, const JointVector& q) const {
+    return ReferenceVelocity(control_.reference, control_.pseudoinverse, control_.subtask, arm_, q,
+                             leader_.At(t_s), true);
+  }
+
+  const ControlConfig& control_;
   const LeaderPath& leader_;
   PlanarArm arm_;
+  double t_s_ = 0.0;
   JointVector q_;
+  JointVector dq_;
 };
 
 void MeasureMotion(PerfectMotion motion, const LeaderPath& leader, double disturbance_Nm, PathCheck& check) {
-  const auto settle = static_cast<int>(kSettle_s / kStep_s);
-  const auto samples = static_cast<int>(check.sampled_s / kStep_s);
-  for (int k = -settle; k < 0; ++k) motion.Advance(k * kStep_s);
-
   const PlanarArm& arm = motion.arm();
   const ParameterVector theta = arm.Theta();
-  for (int k = 0; k <= samples; ++k) {
-    const double t_s = k * kStep_s;
-    const JointVector q = motion.q_rad();
-    const JointVector dq = motion.Velocity(t_s, q);
-    motion.Advance(t_s);
-    const JointVector ddq = (motion.Velocity(t_s + kStep_s, motion.q_rad()) - dq) / kStep_s;
+  do {
+    const Zeta leader_now = leader.At(motion.t_s());
+    const JointVector dq = motion.dq_rad_s();
+    const PlanarArm::Posture at = arm.At(motion.q_rad());
+    motion.Advance();
+    const JointVector ddq = (motion.dq_rad_s() - dq) / kStep_s;
 
-    const PlanarArm::Posture at = arm.At(q);
     const JointVector tau_Nm = arm.Inertia(at, theta) * ddq + arm.Bias(at, dq, theta);
     for (size_t i = 0; i < check.torques.size(); ++i) {
       double& needed_Nm = check.torques[i].needed_Nm;
       needed_Nm = std::max(needed_Nm, std::abs(tau_Nm[static_cast<Eigen::Index>(i)]) + disturbance_Nm);
     }
     check.sigma_min = std::min(check.sigma_min, DampedPseudoinverse({}, arm.Jacobian(at)).sigma_min);
-    check.error_m = std::max(check.error_m, (leader.At(t_s).x_m - arm.Position(at)).norm());
-  }
+    check.error_m = std::max(check.error_m, (leader_now.x_m - arm.Position(at)).norm());
+  } while (motion.t_s() <= check.sampled_s);
 }
 
 }  // namespace
@@ -92,6 +98,7 @@ PathCheck CheckPath(const ScenarioConfig& scenario, const ArmEntry& entry, const
   PathCheck check;
   MeasureReach(PlanarArm(entry.arm), leader, length_s, check);
 
+  check.error_allowed_m = scenario.criterion.error_max_m;
   check.sampled_s = std::min(length_s, kMotionMax_s);
   check.sigma_min = std::numeric_limits<double>::infinity();
   for (const JointDriveConfig& joint : entry.joints) check.torques.push_back({0.0, joint.torque_limit_Nm});

@@ -28,6 +28,7 @@ struct PathCheck {
   double reach_inner_m = 0.0;  ///< and to its inner edge
   double sigma_min = 0.0;      ///< smallest singular value of J on the motion, m/rad
   double error_m = 0.0;  ///< largest distance from the leader: what limits and damping of the reference leave
+  double error_allowed_m = 0.0;     ///< by the scenario's criterion
   double sampled_s = 0.0;           ///< length of the motion
   std::vector<TorqueNeed> torques;  ///< by joint
 

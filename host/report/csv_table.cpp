@@ -35,35 +35,37 @@ CsvTable::CsvTable(const std::filesystem::path& path) : path_(path) {
   std::string line;
   if (!std::getline(file, line)) throw ReportError(path.string() + ": is empty, a header line is expected");
   for (const std::string_view name : Split(line)) {
-    index_.emplace(name, names_.size());
-    names_.emplace_back(name);
+    index_.emplace(name, columns_.size());
+    columns_.push_back({.name = std::string(name), .values = {}, .problem = {}});
   }
-  columns_.resize(names_.size());
-  for (size_t line_number = 2; std::getline(file, line); ++line_number) AppendRow(line, line_number);
+  for (int line_number = 2; std::getline(file, line); ++line_number) {
+    AppendRow(line, path.string() + ":" + std::to_string(line_number) + ": ");
+  }
   if (rows() == 0) throw ReportError(path.string() + ": has a header but no rows");
 }
 
-void CsvTable::AppendRow(const std::string& line, size_t line_number) {
-  const auto place = [&] { return path_.string() + ":" + std::to_string(line_number) + ": "; };
+void CsvTable::AppendRow(const std::string& line, const std::string& place) {
   const std::vector<std::string_view> fields = Split(line);
-  if (fields.size() != names_.size()) {
-    throw ReportError(place() + std::to_string(fields.size()) + " fields, the header has " +
-                      std::to_string(names_.size()));
+  if (fields.size() != columns_.size()) {
+    throw ReportError(place + std::to_string(fields.size()) + " fields, the header has " +
+                      std::to_string(columns_.size()));
   }
   for (size_t i = 0; i < fields.size(); ++i) {
+    NamedColumn& column = columns_[i];
     double value;
-    if (!ParseNumber(fields[i], &value)) {
-      throw ReportError(place() + "column " + names_[i] + ": '" + std::string(fields[i]) +
-                        "' is not a number");
+    if (!ParseNumber(fields[i], &value) && column.problem.empty()) {
+      column.problem = place + "column " + column.name + ": '" + std::string(fields[i]) + "' is not a number";
     }
-    columns_[i].push_back(value);
+    column.values.push_back(value);
   }
 }
 
 const std::vector<double>& CsvTable::Column(const std::string& column) const {
   const auto found = index_.find(column);
   if (found == index_.end()) throw ReportError(path_.string() + ": has no column " + column);
-  return columns_[found->second];
+  const NamedColumn& named = columns_[found->second];
+  if (!named.problem.empty()) throw ReportError(named.problem);
+  return named.values;
 }
 
 }  // namespace armada

@@ -42,7 +42,9 @@ std::string JointCurves(const std::string& path, int joints, const std::string& 
   const std::string width = " linewidth " + GnuplotNumber(linewidth);
   std::vector<std::string> curves;
   for (int joint = 1; joint <= joints; ++joint) {
-    curves.push_back(Curve(path, prefix + std::to_string(joint) + suffix, JointStyle(joint) + width));
+    std::string column = prefix;
+    column += std::to_string(joint);
+    curves.push_back(Curve(path, column + suffix, JointStyle(joint) + width));
   }
   return Joined(curves);
 }
@@ -75,10 +77,10 @@ Figure PostureFigure(const RecordedRun& run, const ArmRecord& arm) {
     const std::string column = "q" + std::to_string(joint) + "_rad";
     angles.push_back(Slice(arm.trace, column, WholeRun(run)));
     means += (means.empty() ? "" : ", ") + ("q" + std::to_string(joint)) + " " +
-             NumberText(MeanInWindow(run, arm.trace, column));
+             ShortNumber(MeanInWindow(run, arm.trace, column));
     if (!arm.without_subtask) continue;
     angles.push_back(Slice(*arm.without_subtask, column, WholeRun(run)));
-    means += " (" + NumberText(MeanInWindow(run, *arm.without_subtask, column)) + ")";
+    means += " (" + ShortNumber(MeanInWindow(run, *arm.without_subtask, column)) + ")";
   }
   const AxisRange range = RobustRange(kOneTurn, angles, 3.0 * std::numbers::pi);
   const std::string number = std::to_string(arm.id);
@@ -110,7 +112,7 @@ Figure ManipulabilityFigure(const RecordedRun& run, size_t index) {
   const std::string with_style = "linecolor rgb \"" + ArmColour(index) + "\" linewidth 1.6";
   const std::string without_style = "linecolor rgb \"#808080\" linewidth 1.4 dashtype (5,3)";
   std::vector<std::string> curves = {Curve(TracePath(arm, true), "manipulability", with_style)};
-  std::string means = NumberText(MeanInWindow(run, arm.trace, "manipulability")) + " with the subtask";
+  std::string means = ShortNumber(MeanInWindow(run, arm.trace, "manipulability")) + " with the subtask";
   Figure figure;
   figure.name = "manipulability_arm_" + number;
   figure.title = "Manipulability of arm " + number + " with and without its subtask";
@@ -119,7 +121,7 @@ Figure ManipulabilityFigure(const RecordedRun& run, size_t index) {
   if (arm.without_subtask) {
     const std::vector<double>& without = arm.without_subtask->Column("manipulability");
     values.insert(values.end(), without.begin(), without.end());
-    means += " and " + NumberText(MeanInWindow(run, *arm.without_subtask, "manipulability")) + " without it";
+    means += " and " + ShortNumber(MeanInWindow(run, *arm.without_subtask, "manipulability")) + " without it";
     curves.insert(curves.begin(), Curve(TracePath(arm, false), "manipulability", without_style));
     figure.legend.push_back({"without subtask", without_style});
   }

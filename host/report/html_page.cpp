@@ -41,10 +41,11 @@ std::string BlameText(const RecordedRun& run, bool ok) {
   if (!diverged.empty()) text += "<p class=\"alarm\">DIVERGED: " + ArmList(diverged) + ".</p>";
   if (ok) return text;
   if (!too_far.empty()) {
-    text += "<p class=\"alarm\">" + ShortNumber(kCriterion_mm) + " mm or more from the leader within the window: " +
-            ArmList(too_far) + ".</p>";
+    text += "<p class=\"alarm\">" + ShortNumber(kCriterion_mm) +
+            " mm or more from the leader within the window: " + ArmList(too_far) + ".</p>";
   }
-  if (text.empty()) text = "<p class=\"alarm\">Every arm follows, but the fleet misses the scenario's own criterion.</p>";
+  if (text.empty())
+    text = "<p class=\"alarm\">Every arm follows, but the fleet misses the scenario's own criterion.</p>";
   return text;
 }
 

@@ -9,7 +9,7 @@ namespace armada {
 namespace {
 
 constexpr double kBinsPerDecade = 10.0;
-constexpr char kAllStyle[] = "linecolor rgb \"#C8CCD2\"";
+constexpr char kAllStyle[] = "linecolor rgb \"#A3A9B2\"";
 
 struct Measure {
   const char* title;

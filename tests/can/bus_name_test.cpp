@@ -63,7 +63,8 @@ TEST(BusName, ABadNameIsRefusedWithWhatWasGivenAndWhatIsAllowed) {
   for (const Bad& bad : kBad) {
     std::string error;
     EXPECT_FALSE(ParseBusName(bad.name, &error)) << bad.name;
-    EXPECT_NE(error.find("\"" + std::string(bad.name) + "\""), std::string::npos) << error;
+    EXPECT_NE(error.find(std::string("bus name \"").append(bad.name).append("\": ")), std::string::npos)
+        << error;
     EXPECT_NE(error.find(bad.problem), std::string::npos) << error;
     EXPECT_NE(error.find("allowed are udp:<group>:<port>"), std::string::npos) << error;
   }

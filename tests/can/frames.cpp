@@ -41,9 +41,11 @@ std::string Describe(const CanFrame& frame) {
                           frame.error_state_indicator}) {
     text += flag ? " 1" : " 0";
   }
-  text += " " + std::to_string(frame.length) + " ";
+  text += ' ';
+  text += std::to_string(frame.length);
+  text += ' ';
   const size_t size = frame.remote ? 0 : frame.length;
-  if (size == 0) return text + "-";
+  if (size == 0) text += '-';
   for (size_t i = 0; i < size; ++i) {
     char byte[3];
     std::snprintf(byte, sizeof byte, "%02x", static_cast<unsigned>(frame.data[i]));

@@ -15,6 +15,7 @@ PythonJudge::PythonJudge(const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {ARMADA_PYTHON, ARMADA_PYTHON_CAN_JUDGE};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   process_ = fork();

@@ -74,7 +74,7 @@ class ArmRules {
              errors_);
       return;
     }
-    if (joints.found() && arm_.joint.size() != arm_.link.size()) {
+    if (arm_.joint.size() != arm_.link.size()) {
       Report(joints,
              "given " + std::to_string(arm_.joint.size()) + " joints, expected one a link, " + std::to_string(dof()),
              errors_);
@@ -85,9 +85,9 @@ class ArmRules {
 
   void CheckJoint(size_t i, const ConfigCursor& at) {
     const JointDriveConfig& joint = arm_.joint[i];
-    // With a [[arm.joint]] list the reader has said so already; without one the arm's limit is all there is.
-    if (joint.torque_limit_Nm <= 0.0 && IsClean(at_.At("torque_limit_Nm"), *errors_)) {
-      Report(at_.At("torque_limit_Nm"), "missing; it is the largest torque of a joint: one value, or one a joint", errors_);
+    const ConfigCursor limit = (at.found() ? at : at_).At("torque_limit_Nm");
+    if (std::isnan(joint.torque_limit_Nm) && IsClean(limit, *errors_)) {
+      Report(limit, "missing; it is the largest torque of the joint, here or for all joints of the arm", errors_);
     }
     if (std::abs(joint.direction) != 1.0) {
       Report(at.At("direction"), "given " + ValueText(joint.direction) + ", allowed are 1 and -1", errors_);
@@ -166,15 +166,16 @@ class ArmRules {
   }
 
   void CheckReach() {
+    if (dof() < PlanarArm::kTaskDim) return;  // its reach is a circle
     const PlanarArm arm(PlanarArmOf(arm_));
     const ReferenceConfig& reference = arm_.control.reference;
     const double inner = arm.reach_min_m() + reference.reach_inner_margin_m;
     const double outer = arm.reach_max_m() - reference.reach_outer_margin_m;
     if (inner < outer) return;
     Report(Control("reference.reach_inner_margin_m"),
-           "with both margins arm " + std::to_string(arm_.id) + " has no reach left: " + ValueText(inner) + " to " +
-               ValueText(outer) + " m; allowed is less together than " +
-               ValueText(arm.reach_max_m() - arm.reach_min_m()) + " m",
+           "with both margins arm " + std::to_string(arm_.id) + " has no reach left: " + RoundedText(inner) + " to " +
+               RoundedText(outer) + " m; allowed is less together than " +
+               RoundedText(arm.reach_max_m() - arm.reach_min_m()) + " m",
            errors_);
   }
 
@@ -185,32 +186,38 @@ class ArmRules {
     const ProjectionConfig& set = arm_.control.projection;
     if (InProjectionSet(set, arm, theta)) return;
     const int n = arm.dof();
+    double coupling = 0.0;
     for (int a = 0; a < n; ++a) {
       const double D_aa = theta[arm.InertiaIndex(a, a)];
       const std::string name = "D_" + std::to_string(a + 1) + std::to_string(a + 1);
-      if (D_aa < set.inertia_min_kgm2) ReportBound("inertia_min_kgm2", set.inertia_min_kgm2, name, D_aa, "most");
-      if (D_aa > set.inertia_max_kgm2) ReportBound("inertia_max_kgm2", set.inertia_max_kgm2, name, D_aa, "least");
+      if (D_aa < set.inertia_min_kgm2) ReportTooHigh("inertia_min_kgm2", set.inertia_min_kgm2, name, D_aa);
+      if (D_aa > set.inertia_max_kgm2) ReportTooLow("inertia_max_kgm2", set.inertia_max_kgm2, name, D_aa);
       for (int b = a + 1; b < n; ++b) {
-        const double D_ab = theta[arm.InertiaIndex(a, b)];
-        const double needed = (n - 1) * std::abs(D_ab) / std::sqrt(D_aa * theta[arm.InertiaIndex(b, b)]);
-        const std::string pair = "the coupling of links " + std::to_string(a + 1) + " and " + std::to_string(b + 1);
-        if (needed > set.correlation_max) {
-          ReportBound("correlation_max", set.correlation_max, pair, needed, "least");
-        }
+        const double correlation = std::abs(theta[arm.InertiaIndex(a, b)]) / std::sqrt(D_aa * theta[arm.InertiaIndex(b, b)]);
+        coupling = std::max(coupling, (n - 1) * correlation);
       }
+    }
+    if (coupling > set.correlation_max) {
+      ReportTooLow("correlation_max", set.correlation_max, "(n - 1) |D_ab| / sqrt(D_aa D_bb)", coupling);
     }
     for (int p = arm.InertiaParameterCount(); p < arm.parameter_count(); ++p) {
       const std::string name = "G_" + std::to_string(p - arm.InertiaParameterCount() + 1);
-      if (theta[p] > set.gravity_max_kgm) ReportBound("gravity_max_kgm", set.gravity_max_kgm, name, theta[p], "least");
-      if (theta[p] < set.gravity_min_kgm) ReportBound("gravity_min_kgm", set.gravity_min_kgm, name, theta[p], "most");
+      if (theta[p] > set.gravity_max_kgm) ReportTooLow("gravity_max_kgm", set.gravity_max_kgm, name, theta[p]);
     }
   }
 
-  void ReportBound(const std::string& bound, double given, const std::string& parameter, double needed,
-                   const char* direction) {
+  // Rounded so that what is said to be allowed is.
+  void ReportTooHigh(const std::string& bound, double given, const std::string& parameter, double actual) {
+    ReportBound(bound, given, parameter, actual, "at most " + ValueText(std::floor(actual * 1e3) / 1e3));
+  }
+  void ReportTooLow(const std::string& bound, double given, const std::string& parameter, double actual) {
+    ReportBound(bound, given, parameter, actual, "at least " + ValueText(std::ceil(actual * 1e3) / 1e3));
+  }
+  void ReportBound(const std::string& bound, double given, const std::string& parameter, double actual,
+                   const std::string& allowed) {
     Report(Control("projection." + bound),
            "given " + ValueText(given) + ", but the links of arm " + std::to_string(arm_.id) + " have " + parameter +
-               " = " + ValueText(needed) + ": allowed is at " + direction + " that",
+               " = " + RoundedText(actual) + ": allowed is " + allowed,
            errors_);
   }
 

@@ -29,12 +29,11 @@ void SpellOutPins(ConfigNode* root) {
   }
 }
 
-// Joints that the file leaves out.
+// Arms that leave their joints out.
 void SpellOutJoints(FleetLayout* layout) {
   for (ArmLayout& arm : layout->arm) {
-    for (size_t i = 0; arm.joint.size() < arm.link.size() && i < arm.link.size(); ++i) {
-      if (i == arm.joint.size()) arm.joint.push_back(arm.JointPrototype(i));
-    }
+    if (!arm.joint.empty()) continue;
+    for (size_t i = 0; i < arm.link.size(); ++i) arm.joint.push_back(arm.JointPrototype(i));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "firmware/app/config/fleet_layout.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace armada {
 namespace {
@@ -40,7 +41,7 @@ JointDriveConfig ArmLayout::JointPrototype(size_t i) const {
   prototype.node_id = static_cast<int>(i) + 1;
   const Eigen::Index known = torque_limit_Nm.size();
   const auto own = known == 1 ? 0 : static_cast<Eigen::Index>(i);
-  if (own < known) prototype.torque_limit_Nm = torque_limit_Nm[own];
+  prototype.torque_limit_Nm = own < known ? torque_limit_Nm[own] : std::numeric_limits<double>::quiet_NaN();
   return prototype;
 }
 

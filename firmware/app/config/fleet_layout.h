@@ -62,7 +62,7 @@ struct ArmLayout {
     parameter.Table("control", control);
   }
 
-  /// Joint i, from 0, where the file says nothing of it. A torque limit that is not known is 0, which is not legal.
+  /// Joint i, from 0, where the file says nothing of it. Its torque limit is NaN if the arm gives none for it.
   JointDriveConfig JointPrototype(size_t i) const;
 };
 

@@ -10,11 +10,18 @@ namespace {
 using Errors = std::vector<ConfigError>;
 
 void CheckTiming(const TimingConfig& timing, const ConfigCursor& at, Errors* errors) {
-  if (!IsClean(at, *errors) || timing.sample_to_torque_s < timing.period_s) return;
-  Report(at.At("sample_to_torque_s"),
-         "given " + ValueText(timing.sample_to_torque_s) + " s, allowed is below timing.period_s = " +
-             ValueText(timing.period_s) + " s",
-         errors);
+  if (!IsClean(at, *errors)) return;
+  const auto check = [&](const char* key, double given_s, bool good, const char* side) {
+    if (good) return;
+    Report(at.At(key),
+           "given " + ValueText(given_s) + " s, allowed is " + side + " timing.period_s = " + ValueText(timing.period_s) +
+               " s",
+           errors);
+  };
+  const double h = timing.period_s;
+  check("sample_to_torque_s", timing.sample_to_torque_s, timing.sample_to_torque_s < h, "below");
+  check("feedback_timeout_s", timing.feedback_timeout_s, timing.feedback_timeout_s < h, "below");
+  check("feedback_stale_s", timing.feedback_stale_s, timing.feedback_stale_s > h, "above");
 }
 
 void CheckLcmUrl(const LcmLinkConfig& link, const ConfigCursor& at, Errors* errors) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <string>
+#include <string_view>
 #include <typeindex>
 #include <utility>
 #include <vector>
@@ -22,7 +24,7 @@ class ReferenceWriter {
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {
     rows_ += std::string("| `") + info.key + "` | " + info.unit + " | " + Default(info, value) + " | " +
-             Allowed(info, value) + " | " + info.meaning + " |\n";
+             Allowed(info, value) + " | " + WithoutBars(info.meaning) + " |\n";
   }
   template <class Config>
   void Table(const char* name, Config& config) {
@@ -49,6 +51,8 @@ class ReferenceWriter {
     if (IsRequired(info, value)) return "required";
     if constexpr (requires { value.size(); }) {
       if (value.size() == 0) return "none";
+    } else if constexpr (std::same_as<T, double>) {
+      if (std::isnan(value)) return "none";
     }
     return "`" + ValueText(value) + "`";
   }
@@ -67,6 +71,12 @@ class ReferenceWriter {
   template <NamedEnum Enum>
   static std::string Allowed(const ParameterInfo&, Enum kind) {
     return AllNames(kind);
+  }
+  /// A bar would end the cell.
+  static std::string WithoutBars(std::string_view text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+    return escaped;
   }
   static std::string Range(const ParameterInfo& info) { return ValueText(info.min) + " to " + ValueText(info.max); }
 

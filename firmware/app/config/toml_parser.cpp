@@ -6,7 +6,17 @@
 #include <fstream>
 #include <sstream>
 
-#define TOML_EXCEPTIONS 0
+// toml++ 3.3 has preconditions that a file can break ("[[[x]]]"): an abort in a debug build, undefined in a release. Here
+// they are kept in both, and are an error of the file like any other.
+namespace armada {
+struct BrokenPrecondition {};
+constexpr void RequireOfToml(bool condition) {
+  if (!condition) throw BrokenPrecondition{};
+}
+}  // namespace armada
+#undef NDEBUG
+#define TOML_ASSERT(condition) armada::RequireOfToml(static_cast<bool>(condition))
+#define TOML_EXCEPTIONS 1
 #define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
 
@@ -52,15 +62,17 @@ ConfigNode Convert(const toml::node& from, const toml::source_region& place, con
 }  // namespace
 
 std::optional<ConfigNode> ParseToml(std::string_view text, const std::string& file, std::vector<ConfigError>* errors) {
-  const toml::parse_result result = toml::parse(text, file);
-  if (!result) {
-    const toml::parse_error& error = result.error();
+  try {
+    const toml::table table = toml::parse(text, file);
+    ConfigNode root = Convert(table, table.source(), file);
+    root.line = std::max(root.line, 1);
+    return root;
+  } catch (const toml::parse_error& error) {
     errors->push_back({file, static_cast<int>(error.source().begin.line), "", std::string(error.description())});
-    return std::nullopt;
+  } catch (const BrokenPrecondition&) {
+    errors->push_back({file, 0, "", "not TOML: a header in brackets has no name"});
   }
-  ConfigNode root = Convert(result.table(), result.table().source(), file);
-  root.line = std::max(root.line, 1);
-  return root;
+  return std::nullopt;
 }
 
 std::optional<ConfigNode> LoadToml(const std::string& path, std::vector<ConfigError>* errors) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace armada {
 
@@ -10,6 +11,8 @@ std::string ValueText(double value) {
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   return {text.data(), end};
 }
+
+std::string RoundedText(double value) { return ValueText(std::round(value * 1e3) / 1e3); }
 
 std::string ValueText(std::string_view value) {
   constexpr std::string_view kHex = "0123456789abcdef";

@@ -34,6 +34,9 @@ std::string ValueText(const std::vector<Element>& values) {
   return text + "]";
 }
 
+/// To three decimals, for messages.
+std::string RoundedText(double value);
+
 /// One value stands for all: written as a number.
 template <int kMaxRows>
 std::string ValueText(const BoundedVector<kMaxRows>& values) {

@@ -1,0 +1,177 @@
+// armada-hil: a scenario's arms and drives, emulated in real time on the fleet's buses.
+//
+// Exit codes: 0 ran to its end or to a signal; 1 a bus or a file cannot be used; 2 usage; 78 bad
+// configuration.
+
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+
+#include "firmware/app/exit_codes.h"
+#include "firmware/app/heap_counter.h"
+#include "firmware/app/realtime.h"
+#include "firmware/can/open_bus.h"
+#include "hil/active_drive.h"
+#include "hil/hil_report.h"
+#include "hil/hil_server.h"
+#include "hil/poll_clock.h"
+#include "hil/scenario_file.h"
+
+namespace armada {
+namespace {
+
+constexpr int64_t kListenNs = 150'000'000;  // one and a half heartbeats
+constexpr int64_t kStartUpNs = 1'000'000'000;
+constexpr int64_t kLongestWaitNs = 3600 * kStartUpNs;  // beyond it the number is of another clock
+
+struct Options {
+  std::string scenario;
+  std::vector<std::string> sets;
+  uint64_t seed = 1;
+  int64_t epoch_ns = 0;  // 0: one second after the benches are switched on
+  double seconds = 0.0;  // 0: the scenario's
+  std::string out;
+  int priority = 85;  // before the boards: hardware does not wait for its controller
+};
+
+using Buses = std::vector<std::unique_ptr<CanBus>>;
+using Logs = std::vector<std::unique_ptr<CanLog>>;
+
+int Fail(const std::string& message) {
+  std::cerr << "armada-hil: " << message << '\n';
+  return kExitFailed;
+}
+
+bool OpenBuses(const FleetConfig& fleet, Buses* buses, std::string* error) {
+  for (const ArmEntry& arm : fleet.arms) {
+    buses->push_back(OpenBus(arm.bus, error));
+    if (buses->back() == nullptr) return false;
+  }
+  return true;
+}
+
+int64_t WallOffset() {
+  timespec wall{};
+  clock_gettime(CLOCK_REALTIME, &wall);
+  return int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec - MonotonicNow();
+}
+
+bool CreateLogs(const FleetConfig& fleet, const std::string& directory, Logs* logs, std::string* error) {
+  std::error_code code;
+  std::filesystem::create_directories(directory, code);
+  if (code) {
+    *error = "cannot make " + directory + ": " + code.message();
+    return false;
+  }
+  const int64_t wall_offset_ns = WallOffset();
+  for (const ArmEntry& arm : fleet.arms) {
+    const std::string id = std::to_string(arm.id);
+    logs->push_back(CanLog::Create(directory + "/can_" + id + ".log", "can" + id, wall_offset_ns, error));
+    if (logs->back() == nullptr) return false;
+  }
+  return true;
+}
+
+// The loop, and what it came to.
+HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t epoch_ns, const Buses& buses,
+                const Logs& logs, PollClock* clock) {
+  std::vector<CanLog*> log_pointers;
+  for (const auto& log : logs) log_pointers.push_back(log.get());
+  const CanLogWriter writer(log_pointers);  // started before the priority is raised: it keeps the low one
+  HilReport report;
+  report.grant = EnterRealtime(options.priority);
+  if (!report.grant.complaint.empty()) std::cerr << "armada-hil: " << report.grant.complaint << '\n';
+  prctl(PR_SET_TIMERSLACK, 1ul);  // without SCHED_FIFO the kernel would add up to 50 us to each wait
+
+  HilServer server(scenario, options.seed, epoch_ns, buses, log_pointers, clock);
+  std::cout << "armada-hil: " << buses.size() << " arms on, seed " << options.seed << ", epoch " << epoch_ns
+            << " ns" << std::endl;
+  const uint64_t heap_before = HeapCounter::Allocations();
+  const int64_t faults_before = PageFaults();
+  report.end = server.Run(options.seconds > 0.0 ? options.seconds : scenario.seconds);
+  if (HeapCounter::available()) report.heap_allocations = HeapCounter::Allocations() - heap_before;
+  report.page_faults = PageFaults() - faults_before;
+  report.scenario = scenario.name;
+  report.seed = options.seed;
+  report.epoch_ns = epoch_ns;
+  report.seconds = std::max(0.0, server.time_s());
+  report.arms = server.Results();
+  report.pacing = server.pacing();
+  return report;
+}
+
+int WriteResults(const HilReport& report, const Logs& logs, const std::string& directory) {
+  std::string error;
+  if (!WriteHilReport(report, logs, directory + "/hil.json", &error)) return Fail(error);
+  for (const auto& log : logs) {
+    if (!log->error().empty()) return Fail(log->error());
+  }
+  return kExitOk;
+}
+
+int Run(const Options& options) {
+  std::vector<ConfigError> errors;
+  const auto scenario = LoadScenario(options.scenario, options.sets, &errors);
+  if (!scenario) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+
+  std::string error;
+  Buses buses;
+  if (!OpenBuses(scenario->fleet, &buses, &error)) return Fail(error);
+  const auto clock = PollClock::Create(buses, &error);
+  if (clock == nullptr) return Fail(error);
+  if (const auto drive = FindActiveDrive(buses, kListenNs, clock.get())) {
+    return Fail("bus " + scenario->fleet.arms[drive->bus].bus +
+                ": another emulation or drive is already active (heartbeat of node " +
+                std::to_string(drive->node_id) + ")");
+  }
+  Logs logs;
+  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, &logs, &error)) return Fail(error);
+
+  const int64_t now_ns = clock->Now();
+  const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : now_ns + kStartUpNs;
+  if (epoch_ns < now_ns || epoch_ns > now_ns + kLongestWaitNs) {
+    std::cerr << "armada-hil: --epoch-ns " << epoch_ns << ": must be on CLOCK_MONOTONIC, which is at "
+              << now_ns << ", and within the next hour\n";
+    return kExitUsage;
+  }
+  const HilReport report = Serve(*scenario, options, epoch_ns, buses, logs, clock.get());
+  const int code = options.out.empty() ? kExitOk : WriteResults(report, logs, options.out);
+  if (report.end == HilEnd::kBusDown)
+    return Fail("a bus went down at " + std::to_string(report.seconds) + " s");
+  return code;
+}
+
+}  // namespace
+}  // namespace armada
+
+int main(int argc, char** argv) {
+  armada::Options options;
+  CLI::App app("Emulates a scenario's arms and drives in real time, on the buses that its fleet names.",
+               "armada-hil");
+  app.add_option("SCENARIO", options.scenario, "scenario file (TOML)")->required();
+  app.add_option("--seed", options.seed, "of start states, disturbances and sensor noise")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--epoch-ns", options.epoch_ns,
+                 "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seconds", options.seconds, "length of the run from the epoch; default: the scenario's")
+      ->check(CLI::Range(0.001, 1e6));
+  app.add_option("--set", options.sets,
+                 "key=value in place of the scenario's or the fleet's; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--out", options.out, "directory for hil.json and can_<id>.log");
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
+      ->check(CLI::Range(0, 99));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
+  }
+  return armada::Run(options);
+}

@@ -1,0 +1,84 @@
+// armada: the command line of the fleet.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "firmware/app/exit_codes.h"
+#include "hil/scenario_file.h"
+#include "host/check.h"
+#include "host/report_command.h"
+#include "host/run/run_command.h"
+#include "host/sim/sim_command.h"
+#include "host/sweep/sweep_command.h"
+
+namespace {
+
+std::string ProgramDirectory() { return std::filesystem::read_symlink("/proc/self/exe").parent_path().string(); }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace armada;
+  CLI::App app("Armada: several different robot arms follow one moving leader in task space.", "armada");
+  app.require_subcommand(1);
+  int code = kExitOk;
+
+  CheckOptions check;
+  CLI::App* check_command = app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
+  check_command->add_option("FILE", check.path, "fleet or scenario file")->required();
+  check_command->add_flag("--json", check.json, "print JSON");
+  check_command->callback([&] { code = RunCheck(check); });
+
+  SimOptions sim;
+  CLI::App* sim_command = app.add_subcommand("sim", "run a scenario in virtual time");
+  sim.scenario.AddTo(sim_command);
+  sim_command->add_option("--seed", sim.seed, "seed of start states, disturbance and noise")->capture_default_str();
+  sim_command->add_option("--json", sim.json, "write metrics.json here");
+  sim_command->add_option("--trace", sim.trace, "write traces and metrics into this directory, for `armada report`");
+  sim_command->callback([&] { code = RunSimCommand(sim); });
+
+  SweepOptions sweep;
+  CLI::App* sweep_command = app.add_subcommand("sweep", "run a scenario over many seeds, on all cores");
+  std::vector<std::string> shards;
+  std::string merged;
+  CLI::App* merge_command = sweep_command->add_subcommand("merge", "join the results of shards");
+  merge_command->add_option("FILES", shards, "results written by `armada sweep --json`")->required();
+  merge_command->add_option("--json", merged, "write the joint result here");
+  merge_command->callback([&] { code = RunSweepMergeCommand(shards, merged); });
+  sweep.scenario.AddTo(sweep_command);
+  sweep_command->get_option("SCENARIO")->required(false);
+  sweep_command->add_option("--seeds", sweep.seeds, "A:B, both included")->capture_default_str();
+  sweep_command->add_option("--jobs", sweep.jobs, "threads; 0: all cores")->capture_default_str();
+  sweep_command->add_option("--shard", sweep.shard, "I/N: every N-th seed from the I-th")->capture_default_str();
+  sweep_command->add_option("--json", sweep.json, "write the result here, every seed included");
+  sweep_command->callback([&] {
+    if (!merge_command->parsed()) code = RunSweepCommand(sweep);
+  });
+
+  RunOptions run;
+  run.program_directory = ProgramDirectory();
+  CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes in real time");
+  run.scenario.AddTo(run_command);
+  run_command->add_option("--bus", run.bus, "udp: the user-space CAN bus")->capture_default_str();
+  run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")->capture_default_str();
+  run_command->add_option("--out", run.out, "directory for logs, traces and results")->capture_default_str();
+  run_command->add_option("--json", run.json, "write metrics.json here, too");
+  run_command->callback([&] { code = RunRunCommand(run); });
+
+  std::string report;
+  CLI::App* report_command = app.add_subcommand("report", "figures and a page of a finished run");
+  report_command->add_option("DIR", report, "directory written by `armada run` or `armada sim --trace`")->required();
+  report_command->callback([&] { code = RunReportCommand(report); });
+
+  app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
+    WriteParameterReference(std::cout);
+  });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return code;
+}

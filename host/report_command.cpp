@@ -1,0 +1,57 @@
+#include "host/report_command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "firmware/app/exit_codes.h"
+#include "hil/scenario_file.h"
+#include "host/report/report.h"
+#include "host/sim/sim_command.h"
+
+namespace armada {
+namespace {
+
+// The same scenario and seed with every subtask off, in virtual time.
+int SimulateWithoutSubtasks(const std::string& directory) {
+  std::vector<ConfigError> errors;
+  const auto scenario = LoadScenario(directory + "/scenario.toml", {"arm.*.control.subtask.kind=none"}, &errors);
+  if (!scenario) {
+    PrintErrors(errors, std::cerr);
+    return kExitBadConfig;
+  }
+  std::ifstream file(directory + "/metrics.json");
+  const auto json = nlohmann::ordered_json::parse(file, nullptr, false);
+  if (json.is_discarded() || !json.contains("seed")) {
+    std::cerr << "armada report: " << directory << "/metrics.json is missing or not of a run\n";
+    return kExitFailed;
+  }
+  const bool any_subtask = std::any_of(json.at("arms").begin(), json.at("arms").end(),
+                                       [](const auto& arm) { return arm.value("subtask", "none") != "none"; });
+  if (!any_subtask) return kExitOk;
+  RunMetrics metrics;
+  std::string error;
+  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", &metrics, &error)) {
+    std::cerr << "armada report: " << error << '\n';
+    return kExitFailed;
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+int RunReportCommand(const std::string& directory) {
+  if (std::filesystem::exists(directory + "/scenario.toml")) {
+    if (const int code = SimulateWithoutSubtasks(directory); code != kExitOk) return code;
+  }
+  std::string error;
+  if (!WriteReport(directory, &error)) {
+    std::cerr << "armada report: " << error << '\n';
+    return kExitFailed;
+  }
+  std::cout << directory << "/report.html\n";
+  return kExitOk;
+}
+
+}  // namespace armada

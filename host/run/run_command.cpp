@@ -1,0 +1,231 @@
+#include "host/run/run_command.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "firmware/app/exit_codes.h"
+#include "firmware/app/initial_state.h"
+#include "firmware/app/realtime.h"
+#include "hil/scenario_file.h"
+#include "hil/start_state.h"
+#include "host/arm_table.h"
+#include "host/private_network.h"
+#include "host/process_group.h"
+#include "host/run/run_recorder.h"
+#include "host/run/run_result.h"
+
+namespace armada {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+constexpr int64_t kStartUpNs = 2'000'000'000;   // processes, sockets and drives are up well before
+constexpr double kOverrun_s = 5.0;              // a program that has not ended by then is stuck
+
+int Fail(const std::string& message) {
+  std::cerr << "armada run: " << message << '\n';
+  return kExitFailed;
+}
+
+/// One run of a scenario as processes.
+class Run {
+ public:
+  Run(const RunOptions& options, const ScenarioConfig& scenario)
+      : options_(options), scenario_(scenario), out_(options.out) {}
+
+  bool Prepare(std::string* error);
+  bool Execute(std::string* error);
+  bool Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error);
+  bool interrupted() const { return interrupted_; }
+
+ private:
+  bool WriteInputs(std::string* error);
+  bool StartAll(ProcessGroup* group, std::string* error);
+  bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
+  bool Watch(ProcessGroup* group, std::string* error);
+  void ShowProgress();
+  std::string Program(const char* name) const { return (fs::path(options_.program_directory) / name).string(); }
+  std::string In(const std::string& name) const { return (out_ / name).string(); }
+  std::string Seconds() const { return std::to_string(scenario_.seconds); }
+
+  const RunOptions& options_;
+  const ScenarioConfig& scenario_;
+  fs::path out_;
+  int64_t epoch_ns_ = 0;
+  std::unique_ptr<LcmEndpoint> link_;
+  std::unique_ptr<RunRecorder> recorder_;
+  bool interrupted_ = false;
+};
+
+bool Run::WriteInputs(std::string* error) {
+  std::error_code code;
+  fs::create_directories(out_, code);
+  if (code) {
+    *error = "cannot create " + out_.string() + ": " + code.message();
+    return false;
+  }
+  // What an earlier run left must not pass for a result of this one.
+  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "lcm.log"}) fs::remove(out_ / name, code);
+  for (const char* name : {"report", "without_subtask"}) fs::remove_all(out_ / name, code);
+
+  if (!WriteEffective(scenario_, out_.string(), error)) return false;
+  std::optional<LeaderPath> leader;
+  if (scenario_.leader.kind != LeaderKind::kNone) leader.emplace(scenario_.leader);
+  for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
+    const ArmStart start = DrawStart(scenario_, i, options_.seed, leader ? &*leader : nullptr);
+    const std::string id = std::to_string(scenario_.fleet.arms[i].id);
+    fs::remove(out_ / ("arm_" + id + ".json"), code);
+    if (!WriteInitialState(start.controller, In("initial_" + id + ".toml"), error)) return false;
+  }
+  return true;
+}
+
+bool Run::Prepare(std::string* error) {
+  if (!HasMulticastRoute()) {
+    if (!EnterPrivateNetwork(error)) return false;
+    std::cout << "no multicast route here: running in a private network namespace\n";
+  }
+  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  link_ = url ? LcmEndpoint::Open(*url, error) : nullptr;
+  return link_ != nullptr && WriteInputs(error);
+}
+
+bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error) {
+  std::string log_name = name;
+  for (char& c : log_name) c = c == ' ' ? '_' : c;
+  return group->Start({name, std::move(argv), {}, In(log_name + ".txt")}, error);
+}
+
+bool Run::StartAll(ProcessGroup* group, std::string* error) {
+  epoch_ns_ = MonotonicNow() + kStartUpNs;
+  recorder_ = std::make_unique<RunRecorder>(scenario_, epoch_ns_);
+  const std::string epoch = std::to_string(epoch_ns_);
+  if (!Start(group, "lcm-logger",
+             {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url, In("lcm.log")}, error)) {
+    return false;
+  }
+  if (!Start(group, "hil",
+             {Program("armada-hil"), In("scenario.toml"), "--seed", std::to_string(options_.seed), "--epoch-ns", epoch,
+              "--seconds", Seconds(), "--out", out_.string()},
+             error)) {
+    return false;
+  }
+  for (const ArmEntry& arm : scenario_.fleet.arms) {
+    const std::string id = std::to_string(arm.id);
+    if (!Start(group, "arm " + id,
+               {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds", Seconds(), "--initial",
+                In("initial_" + id + ".toml"), "--json", In("arm_" + id + ".json")},
+               error)) {
+      return false;
+    }
+  }
+  return scenario_.leader.kind == LeaderKind::kNone ||
+         Start(group, "leader", {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds()},
+               error);
+}
+
+void Run::ShowProgress() {
+  const double t_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
+  double worst_m = 0.0;
+  int64_t missed = 0;
+  size_t heard = 0;
+  for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
+    const auto& latest = recorder_->Latest(i);
+    if (!latest) continue;
+    ++heard;
+    worst_m = std::max(worst_m, latest->error_m);
+    missed += latest->missed_ticks;
+  }
+  if (t_s < 0.0) {
+    std::printf("starting: %.1f s to go", -t_s);
+  } else {
+    std::printf("t %5.1f of %g s, %zu of %zu arms, largest |x - x_hat| %8.2f mm, missed ticks %lld", t_s, scenario_.seconds,
+                heard, scenario_.fleet.arms.size(), worst_m * 1e3, static_cast<long long>(missed));
+  }
+  std::fputs(isatty(STDOUT_FILENO) != 0 ? "  \r" : "\n", stdout);
+  std::fflush(stdout);
+}
+
+bool Run::Watch(ProcessGroup* group, std::string* error) {
+  const int64_t end_ns = epoch_ns_ + static_cast<int64_t>((scenario_.seconds + kOverrun_s) * 1e9);
+  const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
+  size_t running = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
+  int64_t next_progress_ns = 0;
+  while (running > 0) {
+    const auto ended = group->Poll(milliseconds(5));
+    link_->Drain([&](const LcmMessage& message) { recorder_->OnMessage(message); });
+    if (ended) {
+      if (!ended->Succeeded() || ended->name == "lcm-logger") {
+        *error = ended->Describe();
+        return false;
+      }
+      --running;
+    }
+    if (ProcessGroup::StopRequested()) {
+      interrupted_ = true;
+      *error = "interrupted; everything is stopped";
+      return false;
+    }
+    const int64_t now_ns = MonotonicNow();
+    if (now_ns > end_ns) {
+      *error = "a program is still running " + std::to_string(kOverrun_s) + " s after the end";
+      return false;
+    }
+    if (now_ns >= next_progress_ns) {
+      ShowProgress();
+      next_progress_ns = now_ns + progress_every_ns;
+    }
+  }
+  std::printf("\n");
+  return true;
+}
+
+bool Run::Execute(std::string* error) {
+  ProcessGroup group;
+  const bool done = StartAll(&group, error) && Watch(&group, error);
+  group.StopAll(milliseconds(2000));
+  return done;
+}
+
+bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error) {
+  if (!recorder_->EveryArmHeard()) {
+    *error = "not every arm was heard on " + scenario_.fleet.link.lcm_url;
+    return false;
+  }
+  if (!recorder_->WriteTraces(out_.string(), error)) return false;
+  if (!CollectRunResult(scenario_, options_.seed, *recorder_, out_.string(), metrics, json, error)) return false;
+  if (!WriteJson(*json, In("metrics.json"), error)) return false;
+  return options_.json.empty() || WriteJson(*json, options_.json, error);
+}
+
+}  // namespace
+
+int RunRunCommand(const RunOptions& options) {
+  const auto scenario = options.scenario.Load();
+  if (!scenario) return kExitBadConfig;
+  if (options.bus != "udp") {
+    std::cerr << "armada run: --bus " << options.bus << ": this version runs on \"udp\", the user-space bus\n";
+    return kExitUsage;
+  }
+  std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds << " s, seed "
+            << options.seed << ", into " << options.out << std::endl;
+  Run run(options, *scenario);
+  std::string error;
+  RunMetrics metrics;
+  nlohmann::ordered_json json;
+  if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {
+    const int code = Fail(error);
+    return run.interrupted() ? 130 : code;
+  }
+  PrintArmTable(metrics, std::cout);
+  PrintProcessTable(json, std::cout);
+  return metrics.ok ? kExitOk : kExitFailed;
+}
+
+}  // namespace armada

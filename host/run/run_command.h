@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "host/scenario_arguments.h"
+
+namespace armada {
+
+struct RunOptions {
+  ScenarioArguments scenario;
+  std::string bus = "udp";
+  uint64_t seed = 1;
+  std::string out = "out/run";
+  std::string json;
+  std::string program_directory;  ///< where armada-arm, armada-hil and armada-leader are
+};
+
+/// `armada run`: the scenario as processes in real time. Starts, watches and stops everything; exit code.
+int RunRunCommand(const RunOptions& options);
+
+}  // namespace armada

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/link/lcm_endpoint.h"
+#include "firmware/link/messages.h"
+#include "hil/leader_path.h"
+#include "hil/scenario.h"
+#include "hil/tracking_record.h"
+#include "host/metrics.h"
+
+namespace armada {
+
+/// Listens to a running fleet on LCM and keeps what the report and metrics.json need: what every controller saw and did.
+class RunRecorder {
+ public:
+  RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns);
+
+  void OnMessage(const LcmMessage& message);
+
+  /// Newest tick of each arm, for the progress line; none before its first.
+  const std::optional<telemetry_t>& Latest(size_t index) const { return arms_[index].latest; }
+  /// True when every arm of the fleet has been heard.
+  bool EveryArmHeard() const;
+
+  /// The part of the result that only the controllers know: estimates, torques, parameters, subtask, state.
+  ArmMetrics Metrics(size_t index) const;
+  /// Errors against the leader, or against where the estimates agree, at the boards' ticks.
+  TrackingRecord Tracking(size_t index) const;
+  /// Largest distance between two arms' estimates of x in the window, m.
+  double EstimateSpread() const;
+  /// Writes leader.csv, arm_<id>.csv and timing.csv. False with *error set.
+  bool WriteTraces(const std::string& directory, std::string* error) const;
+
+ private:
+  struct ArmRecord {
+    std::vector<telemetry_t> telemetry;
+    std::vector<estimate_t> estimates;
+    std::optional<telemetry_t> latest;
+  };
+  double TimeOf(int64_t stamp_ns) const { return 1e-9 * static_cast<double>(stamp_ns - epoch_ns_); }
+  bool InWindow(int64_t stamp_ns) const;
+  Zeta TruthAt(int64_t stamp_ns) const;
+
+  const ScenarioConfig& scenario_;
+  int64_t epoch_ns_;
+  std::optional<LeaderPath> leader_;
+  std::vector<ArmRecord> arms_;
+};
+
+}  // namespace armada

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "firmware/core/estimator.h"
+#include "firmware/core/graph.h"
+
+namespace armada {
+
+/// Estimators (1.9) of a fleet in lock step: at every tick each hears the state that the others have at that tick.
+class EstimatorNetwork {
+ public:
+  EstimatorNetwork(const EstimatorConfig& config, const Digraph& graph, const std::vector<Zeta>& initial)
+      : graph_(graph) {
+    for (const Zeta& zeta : initial) nodes_.emplace_back(config, zeta);
+  }
+
+  /// Corollary 3: another topology from the next tick on.
+  void Switch(const Digraph& graph) { graph_ = graph; }
+
+  /// One tick of `h_s` with the leader's state at its start.
+  void Tick(const Zeta& leader, double h_s) {
+    const std::vector<Estimator> before = nodes_;
+    for (int i = 0; i < graph_.node_count(); ++i) {
+      Neighbours heard;
+      const auto add = [&](double weight, const Zeta& zeta, int agreement) {
+        if (weight > 0.0) heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true};
+      };
+      add(graph_.pin(i), leader, Estimator::kMaxAgreement);
+      for (int j = 0; j < graph_.node_count(); ++j) {
+        const Estimator& other = before[static_cast<size_t>(j)];
+        add(graph_.weight(i, j), other.zeta(), other.agreement());
+      }
+      nodes_[static_cast<size_t>(i)].Update(heard, h_s);
+    }
+  }
+
+  const std::vector<Estimator>& nodes() const { return nodes_; }
+
+ private:
+  Digraph graph_;
+  std::vector<Estimator> nodes_;
+};
+
+}  // namespace armada

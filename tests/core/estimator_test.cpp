@@ -1,0 +1,265 @@
+// One node: what a single Update does.
+#include "firmware/core/estimator.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/random_arms.h"
+
+namespace armada {
+namespace {
+
+constexpr double kH_s = 0.01;
+constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit, EstimatorKind::kPredictive};
+
+EstimatorConfig Config(EstimatorKind kind) {
+  EstimatorConfig config;
+  config.kind = kind;
+  return config;
+}
+
+Zeta RandomZeta(RandomArms& random, double range = 5.0) {
+  return {random.Numbers<TaskVector>(2, range), random.Numbers<TaskVector>(2, range),
+          random.Numbers<TaskVector>(2, range)};
+}
+
+Zeta ZetaOf(double x_m) {
+  Zeta zeta = Zeta::Zero(2);
+  zeta.x_m.setConstant(x_m);
+  return zeta;
+}
+
+Neighbours Hearing(std::initializer_list<Neighbour> list) {
+  Neighbours neighbours;
+  for (const Neighbour& neighbour : list) neighbours.list[static_cast<size_t>(neighbours.count++)] = neighbour;
+  return neighbours;
+}
+
+Neighbour Leader(const Zeta& zeta) { return {1.0, zeta, 0.0, Estimator::kMaxAgreement, true}; }
+
+double Sgn(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
+
+void ExpectEqual(const Zeta& a, const Zeta& b, double tolerance) {
+  EXPECT_LE((a.x_m - b.x_m).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LE((a.v_m_s - b.v_m_s).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LE((a.a_m_s2 - b.a_m_s2).cwiseAbs().maxCoeff(), tolerance);
+}
+
+// (1.9) computed as printed, with the sum of weighted differences inside sgn.
+TEST(Estimator, PaperKindIsExplicitEulerOf1_9) {
+  RandomArms random(1);
+  const EstimatorConfig config = Config(EstimatorKind::kPaper);
+  for (int step = 0; step < 500; ++step) {
+    const Zeta own = RandomZeta(random);
+    Neighbours neighbours;
+    neighbours.count = 1 + step % 5;
+    for (int j = 0; j < neighbours.count; ++j) {
+      // The age is not used: the paper knows no delay.
+      neighbours.list[static_cast<size_t>(j)] = {random.In(0.1, 3.0), RandomZeta(random), 0.3, 5, true};
+    }
+    Zeta expected = own;
+    const auto euler = [&](TaskVector Zeta::*block, double beta) {
+      for (int c = 0; c < 2; ++c) {
+        double sum = 0.0;
+        for (int j = 0; j < neighbours.count; ++j) {
+          const Neighbour& n = neighbours.list[static_cast<size_t>(j)];
+          sum += n.weight * ((own.*block)[c] - (n.zeta.*block)[c]);
+        }
+        (expected.*block)[c] -= kH_s * beta * Sgn(sum);
+      }
+    };
+    euler(&Zeta::x_m, config.beta_1_m_s);
+    euler(&Zeta::v_m_s, config.beta_2_m_s2);
+    euler(&Zeta::a_m_s2, config.beta_3_m_s3);
+    Estimator estimator(config, own);
+    estimator.Update(neighbours, kH_s);
+    ExpectEqual(estimator.zeta(), expected, 0.0);
+  }
+}
+
+TEST(Estimator, PaperKindChattersAroundAConstantLeader) {
+  Estimator estimator(Config(EstimatorKind::kPaper), ZetaOf(1.0 + 0.3 * 4.0 * kH_s));
+  const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
+  for (int k = 0; k < 10; ++k) {
+    const double side = estimator.zeta().x_m[0] - 1.0;
+    estimator.Update(neighbours, kH_s);
+    EXPECT_LT(side * (estimator.zeta().x_m[0] - 1.0), 0.0);
+    EXPECT_TRUE(estimator.in_band());
+  }
+}
+
+TEST(Estimator, ImplicitKindRestsExactlyOnAConstantLeader) {
+  const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
+  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.5));
+  for (int k = 0; k < 20; ++k) estimator.Update(neighbours, kH_s);
+  for (int k = 0; k < 100; ++k) {
+    estimator.Update(neighbours, kH_s);
+    EXPECT_EQ(estimator.zeta().x_m[0], 1.0);
+    EXPECT_EQ(estimator.zeta().v_m_s[1], 0.0);
+  }
+}
+
+// The implicit inclusion z+ - f in -h beta Sgn(z+ - m): its solution is unique, so meeting it is being it.
+TEST(Estimator, ImplicitStepSolvesItsInclusion) {
+  RandomArms random(2);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Zeta own = RandomZeta(random, 0.5);
+    const Zeta other = RandomZeta(random, 0.5);
+    Estimator estimator(Config(EstimatorKind::kImplicit), own);
+    estimator.Update(Hearing({Leader(other)}), kH_s);
+    for (int c = 0; c < 2; ++c) {
+      const double moved = (estimator.zeta().a_m_s2[c] - own.a_m_s2[c]) / (kH_s * 21.0);
+      const double rest = estimator.zeta().a_m_s2[c] - other.a_m_s2[c];
+      if (std::abs(rest) > 1e-12) {
+        EXPECT_NEAR(moved, -Sgn(rest), 1e-9);
+      } else {
+        EXPECT_LE(std::abs(moved), 1.0 + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Estimator, DisagreementShrinksByHBetaEveryTick) {
+  const EstimatorConfig config = Config(EstimatorKind::kImplicit);
+  Estimator estimator(config, ZetaOf(2.0));
+  const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
+  double distance = 1.0;
+  for (int k = 0; k < 30; ++k) {
+    estimator.Update(neighbours, kH_s);
+    distance = std::max(0.0, distance - kH_s * config.beta_1_m_s);
+    EXPECT_NEAR(estimator.zeta().x_m[0] - 1.0, distance, 1e-12);
+  }
+  EXPECT_EQ(distance, 0.0);
+}
+
+TEST(Estimator, PredictiveKindFollowsConstantAccelerationExactly) {
+  Zeta leader{TaskVector{{1.0, -2.0}}, TaskVector{{0.5, 1.0}}, TaskVector{{-2.0, 3.0}}};
+  const double age_s = 0.004;
+  Estimator estimator(Config(EstimatorKind::kPredictive), Taylor(leader, age_s));
+  for (int k = 0; k < 100; ++k) {
+    Neighbour heard = Leader(leader);
+    heard.age_s = age_s;  // what was sent is older than the tick
+    estimator.Update(Hearing({heard}), kH_s);
+    leader = Taylor(leader, kH_s);
+    ExpectEqual(estimator.zeta(), Taylor(leader, age_s), 1e-12);
+    EXPECT_TRUE(estimator.in_band());
+  }
+}
+
+TEST(Estimator, MeanIsWeighted) {
+  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.2));
+  Neighbour far = Leader(ZetaOf(1.23));
+  far.weight = 3.0;
+  estimator.Update(Hearing({Leader(ZetaOf(1.19)), far}), kH_s);
+  EXPECT_NEAR(estimator.zeta().x_m[0], (1.19 + 3.0 * 1.23) / 4.0, 1e-15);
+}
+
+TEST(Estimator, NeighboursWithoutWeightOrNotYetHeardDoNotCount) {
+  for (const EstimatorKind kind : kAllKinds) {
+    Neighbour silent = Leader(ZetaOf(9.0));
+    silent.heard = false;
+    Neighbour unused = Leader(ZetaOf(9.0));
+    unused.weight = 0.0;
+    Estimator with(Config(kind), ZetaOf(1.1));
+    Estimator without(Config(kind), ZetaOf(1.1));
+    for (int k = 0; k < 5; ++k) {
+      with.Update(Hearing({silent, Leader(ZetaOf(1.0)), unused}), kH_s);
+      without.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+    }
+    ExpectEqual(with.zeta(), without.zeta(), 0.0);
+  }
+}
+
+TEST(Estimator, CoastsWhenNobodyIsHeardAndIsThenInNoBand) {
+  RandomArms random(3);
+  const Zeta own = RandomZeta(random);
+  for (const EstimatorKind kind : kAllKinds) {
+    Estimator estimator(Config(kind), own);
+    estimator.Update(Neighbours{}, kH_s);
+    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, kH_s) : own, 0.0);
+    EXPECT_FALSE(estimator.in_band());
+    EXPECT_EQ(estimator.agreement(), 0);
+  }
+}
+
+TEST(Estimator, CoastOverMissedTicksIsTheOwnPrediction) {
+  RandomArms random(4);
+  const Zeta own = RandomZeta(random);
+  for (const EstimatorKind kind : kAllKinds) {
+    Estimator estimator(Config(kind), own);
+    estimator.Coast(0.03);
+    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, 0.03) : own, 0.0);
+  }
+}
+
+TEST(Estimator, IsSyncedAfterTheConfiguredTicksInBand) {
+  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  config.sync_ticks = 4;
+  Estimator estimator(config, ZetaOf(1.0));
+  for (int k = 1; k <= 6; ++k) {
+    estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+    EXPECT_EQ(estimator.agreement(), k);
+    EXPECT_EQ(estimator.synced(), k >= 4);
+  }
+}
+
+TEST(Estimator, AgreementIsAtMostOneMoreThanUpstream) {
+  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
+  Neighbour upstream = Leader(ZetaOf(1.0));
+  for (const int theirs : {0, 0, 0, 1, 1, 7}) {
+    upstream.agreement = theirs;
+    estimator.Update(Hearing({Leader(ZetaOf(1.0)), upstream}), kH_s);
+    EXPECT_LE(estimator.agreement(), theirs + 1);
+  }
+  EXPECT_EQ(estimator.agreement(), 3);  // 1, 1, 1, 2, 2, then one more tick of its own
+}
+
+TEST(Estimator, IsNotSyncedWhileANeighbourInUseIsUnheard) {
+  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
+  Neighbour silent = Leader(ZetaOf(1.0));
+  silent.heard = false;
+  for (int k = 0; k < 50; ++k) estimator.Update(Hearing({Leader(ZetaOf(1.0)), silent}), kH_s);
+  EXPECT_TRUE(estimator.in_band());
+  EXPECT_FALSE(estimator.synced());
+}
+
+TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
+  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  config.desync_ticks = 5;
+  Estimator estimator(config, ZetaOf(1.0));
+  const Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
+  const auto tick = [&](const Neighbours& heard, int count) {
+    for (int k = 0; k < count; ++k) estimator.Update(heard, kH_s);
+  };
+  tick(leader, 5);
+  ASSERT_TRUE(estimator.synced());
+  tick(Neighbours{}, 4);
+  EXPECT_TRUE(estimator.synced());
+  tick(leader, 1);  // the count begins anew
+  tick(Neighbours{}, 4);
+  EXPECT_TRUE(estimator.synced());
+  tick(Neighbours{}, 1);
+  EXPECT_FALSE(estimator.synced());
+  tick(leader, config.sync_ticks);
+  EXPECT_TRUE(estimator.synced());
+}
+
+TEST(Estimator, AgreementStopsAtItsMaximum) {
+  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(0.0));
+  const Neighbours leader = Hearing({Leader(ZetaOf(0.0))});
+  for (int k = 0; k < Estimator::kMaxAgreement + 10; ++k) estimator.Update(leader, kH_s);
+  EXPECT_EQ(estimator.agreement(), Estimator::kMaxAgreement);
+}
+
+TEST(Estimator, LeaderlessStartsAtRest) {
+  RandomArms random(5);
+  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  config.leaderless = true;
+  const Zeta own = RandomZeta(random);
+  const Estimator estimator(config, own);
+  EXPECT_EQ(estimator.zeta().x_m, own.x_m);
+  EXPECT_TRUE(estimator.zeta().v_m_s.isZero());
+  EXPECT_TRUE(estimator.zeta().a_m_s2.isZero());
+}
+
+}  // namespace
+}  // namespace armada
