@@ -59,6 +59,14 @@ int64_t WallOffset() {
   return int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec - MonotonicNow();
 }
 
+std::string LogPath(const std::string& directory, int arm_id) {
+  return directory + "/can_" + std::to_string(arm_id) + ".log";
+}
+
+std::string BusDown(const std::string& bus, double t_s) {
+  return "bus " + bus + " went down at " + std::to_string(t_s) + " s";
+}
+
 bool CreateLogs(const FleetConfig& fleet, const std::string& directory, Logs* logs, std::string* error) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
@@ -68,8 +76,8 @@ bool CreateLogs(const FleetConfig& fleet, const std::string& directory, Logs* lo
   }
   const int64_t wall_offset_ns = WallOffset();
   for (const ArmEntry& arm : fleet.arms) {
-    const std::string id = std::to_string(arm.id);
-    logs->push_back(CanLog::Create(directory + "/can_" + id + ".log", "can" + id, wall_offset_ns, error));
+    const std::string channel = "can" + std::to_string(arm.id);
+    logs->push_back(CanLog::Create(LogPath(directory, arm.id), channel, wall_offset_ns, error));
     if (logs->back() == nullptr) return false;
   }
   return true;
@@ -142,8 +150,9 @@ int Run(const Options& options) {
   }
   const HilReport report = Serve(*scenario, options, epoch_ns, buses, logs, clock.get());
   const int code = options.out.empty() ? kExitOk : WriteResults(report, logs, options.out);
-  if (report.end == HilEnd::kBusDown)
-    return Fail("a bus went down at " + std::to_string(report.seconds) + " s");
+  for (const HilArmResult& arm : report.arms) {
+    if (arm.bus_down) return Fail(BusDown(arm.bus, report.seconds));
+  }
   return code;
 }
 

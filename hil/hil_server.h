@@ -25,8 +25,8 @@ struct HilArmResult {
   bool bus_down = false;
   bool diverged = false;
   std::optional<double> released_s;  ///< when the brakes opened; never without every drive in torque mode
-  std::optional<TrackingRecord>
-      record;  ///< none in a leaderless scenario: there is nothing to measure against
+  /// None in a leaderless scenario: there is nothing to measure against.
+  std::optional<TrackingRecord> record;
   BusCounters counters;
 };
 

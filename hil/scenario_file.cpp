@@ -76,10 +76,12 @@ std::vector<Override> ApplyOwn(const std::vector<Override>& overrides, ConfigNod
   return rest;
 }
 
-std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const std::string& name, const ConfigCursor& at,
-                                        const std::vector<Override>& overrides, std::vector<ConfigError>* errors) {
+std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const std::string& name,
+                                        const ConfigCursor& at, const std::vector<Override>& overrides,
+                                        std::vector<ConfigError>* errors) {
   if (name.empty()) return std::nullopt;  // said already
-  const std::filesystem::path path = (std::filesystem::path(scenario_path).parent_path() / name).lexically_normal();
+  const std::filesystem::path path =
+      (std::filesystem::path(scenario_path).parent_path() / name).lexically_normal();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     Report(at, "given " + ValueText(name) + ", but there is no file " + path.string(), errors);
@@ -143,8 +145,10 @@ void WriteParameterReference(std::ostream& out) {
          "\n"
          "Written by `armada params > docs/parameters.md` from the Config structs of the code; do not edit.\n"
          "\n"
-         "A table of a file is headed as it is written in TOML. What is not required may be left out. `--set key=value`, and\n"
-         "`[overrides]` in a scenario, take the full dotted key, with elements of lists by `id` or by number from 1, and `*`\n"
+         "A table of a file is headed as it is written in TOML. What is not required may be left out. `--set "
+         "key=value`, and\n"
+         "`[overrides]` in a scenario, take the full dotted key, with elements of lists by `id` or by number "
+         "from 1, and `*`\n"
          "for each: `--set arm.6.control.subtask.kind=none`, `--set 'arm.*.gravity_m_s2=9.81'`,\n"
          "`--set leader.axis.1.amplitude_m=0.4`.\n";
   ReferenceWriter::Documented documented;
@@ -157,7 +161,8 @@ void WriteParameterReference(std::ostream& out) {
   ScenarioLayout scenario_layout;
   scenario_layout.Visit(scenario);
   out << "\n## Scenario files\n" << scenario.Text();
-  out << "\n### `[overrides]`\n\nQuoted dotted keys of the scenario or its fleet, each with the value to use instead.\n";
+  out << "\n### `[overrides]`\n\nQuoted dotted keys of the scenario or its fleet, each with the value to use "
+         "instead.\n";
 }
 
 }  // namespace armada

@@ -11,14 +11,16 @@
 
 namespace armada {
 
-/// Reads a scenario file (layout: hil/scenarios/paper.toml, keys: docs/parameters.md) and the fleet file that it names,
-/// relative to itself. Its [overrides], then `sets` (`key=value`), go before what the files say; a key may be the
-/// scenario's or the fleet's. Nothing, and every error that was found, when a rule is broken. Start-up only.
+/// Reads a scenario file (layout: hil/scenarios/paper.toml, keys: docs/parameters.md) and the fleet file that
+/// it names, relative to itself. Its [overrides], then `sets` (`key=value`), go before what the files say; a
+/// key may be the scenario's or the fleet's. Nothing, and every error that was found, when a rule is broken.
+/// Start-up only.
 std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::vector<std::string>& sets,
                                            std::vector<ConfigError>* errors);
 
-/// Writes `fleet.toml` and `scenario.toml` into an existing directory: every value as this run uses it, overrides applied.
-/// LoadScenario reads the same values back. False and one sentence when a file cannot be written.
+/// Writes `fleet.toml` and `scenario.toml` into an existing directory: every value as this run uses it,
+/// overrides applied. LoadScenario reads the same values back. False and one sentence when a file cannot be
+/// written.
 bool WriteEffective(const ScenarioConfig& scenario, const std::string& directory, std::string* error);
 
 /// Every value of the scenario under its full key, the fleet's not among them.

@@ -21,10 +21,10 @@ constexpr auto EnumNames(StartKind) {
 constexpr auto EnumNames(DisturbanceKind) {
   using enum DisturbanceKind;
   return std::to_array<std::pair<DisturbanceKind, std::string_view>>({{kNone, "none"},
-                                                                       {kUniform, "uniform"},
-                                                                       {kConstant, "constant"},
-                                                                       {kSine, "sine"},
-                                                                       {kAdversarial, "adversarial"}});
+                                                                      {kUniform, "uniform"},
+                                                                      {kConstant, "constant"},
+                                                                      {kSine, "sine"},
+                                                                      {kAdversarial, "adversarial"}});
 }
 
 constexpr auto EnumNames(CriterionKind) {

@@ -26,7 +26,9 @@ struct Ring {
   double RadiusOf(const TaskVector& x_m) const { return (x_m - base_m).norm(); }
   /// How far a radius lies outside; not above 0 inside.
   double Excess(double radius_m) const { return std::max(inner_m - radius_m, radius_m - outer_m); }
-  std::string Text() const { return RoundedText(inner_m) + " to " + RoundedText(outer_m) + " m from its base"; }
+  std::string Text() const {
+    return RoundedText(inner_m) + " to " + RoundedText(outer_m) + " m from its base";
+  }
 
   TaskVector base_m;
   double inner_m = 0.0;
@@ -43,7 +45,8 @@ void CheckSines(const LeaderConfig& leader, const ConfigCursor& at, Errors* erro
 
 void CheckWaypoints(const LeaderConfig& leader, const ConfigCursor& at, Errors* errors) {
   const ConfigCursor points = at.At("waypoints_m");
-  if (leader.waypoints_m.empty()) Report(points, "no waypoint is given, allowed are 1 or more of [x, y]", errors);
+  if (leader.waypoints_m.empty())
+    Report(points, "no waypoint is given, allowed are 1 or more of [x, y]", errors);
   for (size_t i = 0; i < leader.waypoints_m.size(); ++i) {
     const size_t count = leader.waypoints_m[i].size();
     if (count == size_t{PlanarArm::kTaskDim}) continue;
@@ -59,14 +62,14 @@ void CheckLeaderFits(const ScenarioConfig& scenario, const ConfigCursor& root, E
   if (leaderless && has_leader) {
     Report(root.At("leader.kind"), given + ", allowed with estimator.leaderless = true is \"none\"", errors);
   } else if (!leaderless && !has_leader) {
-    Report(root.At("leader.kind"), given + ", allowed with estimator.leaderless = false are \"sine\", \"waypoints\"",
-           errors);
+    Report(root.At("leader.kind"),
+           given + ", allowed with estimator.leaderless = false are \"sine\", \"waypoints\"", errors);
   }
   const CriterionKind wanted = leaderless ? CriterionKind::kAgreement : CriterionKind::kTracking;
   if (scenario.criterion.kind != wanted) {
     Report(root.At("criterion.kind"),
-           "given " + ValueText(scenario.criterion.kind) + ", allowed with estimator.leaderless = " +
-               ValueText(leaderless) + " is " + ValueText(wanted),
+           "given " + ValueText(scenario.criterion.kind) +
+               ", allowed with estimator.leaderless = " + ValueText(leaderless) + " is " + ValueText(wanted),
            errors);
   }
   if (!has_leader && scenario.start.kind == StartKind::kNearLeader) {
@@ -81,7 +84,8 @@ void CheckBeta(const ScenarioConfig& scenario, const ConfigCursor& fleet_root, E
     if (beta >= kBetaMargin * bound) return;
     Report(fleet_root.At("estimator").At(key),
            "given " + ValueText(beta) + " " + unit + ", allowed by A2 is at least " + ValueText(kBetaMargin) +
-               " times the leader's " + RoundedText(bound) + " " + unit + ", " + RoundedText(kBetaMargin * bound) + " " + unit,
+               " times the leader's " + RoundedText(bound) + " " + unit + ", " +
+               RoundedText(kBetaMargin * bound) + " " + unit,
            errors);
   };
   const EstimatorConfig& estimator = scenario.fleet.estimator;
@@ -109,8 +113,9 @@ void CheckLeaderInReach(const ScenarioConfig& scenario, const ConfigCursor& root
     }
     if (worst_m <= 0.0) continue;
     Report(root.At("leader"),
-           "out of reach of arm " + std::to_string(entry.id) + ": at t = " + RoundedText(worst_s) + " s the leader is " +
-               RoundedText(ring.RadiusOf(path.At(worst_s).x_m)) + " m from its base; allowed is " + ring.Text(),
+           "out of reach of arm " + std::to_string(entry.id) + ": at t = " + RoundedText(worst_s) +
+               " s the leader is " + RoundedText(ring.RadiusOf(path.At(worst_s).x_m)) +
+               " m from its base; allowed is " + ring.Text(),
            errors);
   }
 }
@@ -126,8 +131,10 @@ void CheckAgreementInReach(const ScenarioConfig& scenario, const ConfigCursor& r
     const double farthest_m = (from_base.array() + range).matrix().norm();
     if (std::max(ring.Excess(nearest_m), ring.Excess(farthest_m)) <= 0.0) continue;
     Report(root.At("start.zeta_range"),
-           "arm " + std::to_string(entry.id) + " may not reach the agreed point: it lies within zeta_range of "
-               "zeta_x_centre_m on each axis, " + RoundedText(nearest_m) + " to " + RoundedText(farthest_m) +
+           "arm " + std::to_string(entry.id) +
+               " may not reach the agreed point: it lies within zeta_range of "
+               "zeta_x_centre_m on each axis, " +
+               RoundedText(nearest_m) + " to " + RoundedText(farthest_m) +
                " m from the arm's base; allowed is " + ring.Text(),
            errors);
   }
@@ -136,11 +143,12 @@ void CheckAgreementInReach(const ScenarioConfig& scenario, const ConfigCursor& r
 }  // namespace
 
 void CheckScenario(const ScenarioConfig& scenario, const ConfigCursor& root, Errors* errors) {
-  const bool times_clean = IsClean(root.At("seconds"), *errors) && IsClean(root.At("window_start_s"), *errors);
+  const bool times_clean =
+      IsClean(root.At("seconds"), *errors) && IsClean(root.At("window_start_s"), *errors);
   if (times_clean && scenario.window_start_s >= scenario.seconds) {
     Report(root.At("window_start_s"),
-           "given " + ValueText(scenario.window_start_s) + " s, allowed is below seconds = " +
-               ValueText(scenario.seconds) + " s",
+           "given " + ValueText(scenario.window_start_s) +
+               " s, allowed is below seconds = " + ValueText(scenario.seconds) + " s",
            errors);
   }
   const ConfigCursor leader = root.At("leader");
@@ -155,19 +163,20 @@ void CheckScenario(const ScenarioConfig& scenario, const ConfigCursor& root, Err
   }
 }
 
-void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& root, const ConfigCursor& fleet_root,
-                            Errors* errors) {
+void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& root,
+                            const ConfigCursor& fleet_root, Errors* errors) {
   const size_t errors_before = errors->size();
   CheckLeaderFits(scenario, root, errors);
   if (scenario.plant.step_s > scenario.fleet.timing.period_s) {
     Report(root.At("plant.step_s"),
-           "given " + ValueText(scenario.plant.step_s) + " s, allowed is at most timing.period_s = " +
-               ValueText(scenario.fleet.timing.period_s) + " s",
+           "given " + ValueText(scenario.plant.step_s) +
+               " s, allowed is at most timing.period_s = " + ValueText(scenario.fleet.timing.period_s) + " s",
            errors);
   }
   if (scenario.drive.watchdog_s > 0.0 && scenario.drive.watchdog_s <= scenario.fleet.timing.period_s) {
     Report(root.At("drive.watchdog_s"),
-           "given " + ValueText(scenario.drive.watchdog_s) + " s, allowed is 0 (off) or above timing.period_s = " +
+           "given " + ValueText(scenario.drive.watchdog_s) +
+               " s, allowed is 0 (off) or above timing.period_s = " +
                ValueText(scenario.fleet.timing.period_s) + " s",
            errors);
   }

@@ -35,7 +35,8 @@ JointVector ReferenceVelocity(const ReferenceConfig& config, const Pseudoinverse
   const TaskVector e = ClampToReach(config, arm, zeta.x_m) - arm.Position(at);
   const double error_m = e.norm();
   TaskVector r = zeta.v_m_s;
-  if (error_m > 0.0) r += (ApproachSpeed(config, error_m) / error_m) * e;
+  // Not `> 0`: an estimate that is not a number must show in the torque, where the gate stops it.
+  if (error_m != 0.0) r += (ApproachSpeed(config, error_m) / error_m) * e;
 
   JointVector dq_r = J_sharp * r;  // (1.5)
   if (arm.dof() > J.rows() && subtask.kind != SubtaskKind::kNone) {

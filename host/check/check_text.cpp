@@ -8,24 +8,22 @@
 namespace armada {
 namespace {
 
-// Right-aligned cells; the first is the row's head and left-aligned.
-struct Row {
-  std::vector<std::string> cells;
-};
+// Cells of a table's row; the first is its head and left-aligned, the others are right-aligned.
+using Row = std::vector<std::string>;
 
 constexpr const char* kIndent = "    ";
 
 void PrintTable(const std::vector<Row>& rows, std::ostream& out) {
   std::vector<size_t> widths;
   for (const Row& row : rows) {
-    widths.resize(std::max(widths.size(), row.cells.size()));
-    for (size_t i = 0; i < row.cells.size(); ++i) widths[i] = std::max(widths[i], row.cells[i].size());
+    widths.resize(std::max(widths.size(), row.size()));
+    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
   for (const Row& row : rows) {
     out << kIndent;
-    for (size_t i = 0; i < row.cells.size(); ++i) {
+    for (size_t i = 0; i < row.size(); ++i) {
       out << (i == 0 ? std::left : std::right) << std::setw(static_cast<int>(widths[i] + (i == 0 ? 0 : 3)))
-          << row.cells[i];
+          << row[i];
     }
     out << '\n';
   }
@@ -84,10 +82,10 @@ void PrintGraph(const CheckResult& result, std::ostream& out) {
 void PrintEstimator(const EstimatorCheck& estimator, std::ostream& out) {
   PrintHead("A2: beta above the leader's bounds", estimator.holds(), out);
   constexpr const char* kNames[] = {"v [m/s]", "a [m/s^2]", "jerk [m/s^3]"};
-  std::vector<Row> rows = {{{"", "beta", "leader", "ratio"}}};
+  std::vector<Row> rows = {{"", "beta", "leader", "ratio"}};
   for (size_t k = 0; k < estimator.margins.size(); ++k) {
     const BetaMargin& margin = estimator.margins[k];
-    rows.push_back({{kNames[k], Fixed(margin.beta, 3), Fixed(margin.leader, 3), Fixed(margin.ratio(), 2)}});
+    rows.push_back({kNames[k], Fixed(margin.beta, 3), Fixed(margin.leader, 3), Fixed(margin.ratio(), 2)});
   }
   PrintTable(rows, out);
   out << kIndent << "estimates exact, in continuous time, after t_f <= " << Fixed(estimator.settled_max_s, 2)
@@ -95,8 +93,8 @@ void PrintEstimator(const EstimatorCheck& estimator, std::ostream& out) {
 }
 
 Row ArmRow(const ArmCheck& arm) {
-  Row row{{std::to_string(arm.id), std::to_string(arm.dof), Fixed(1e2 * arm.bus_load, 1)}};
-  auto add = [&](std::initializer_list<std::string> cells) { row.cells.insert(row.cells.end(), cells); };
+  Row row = {std::to_string(arm.id), std::to_string(arm.dof), Fixed(1e2 * arm.bus_load, 1)};
+  auto add = [&](std::initializer_list<std::string> cells) { row.insert(row.end(), cells); };
   if (arm.disturbance) add({Fixed(arm.disturbance->K_r_min_Nm, 1), Fixed(arm.disturbance->d_2norm_Nm, 1)});
   if (arm.path) {
     const PathCheck& path = *arm.path;
@@ -112,11 +110,11 @@ void PrintArms(const CheckResult& result, std::ostream& out) {
   const bool disturbance = result.arms.front().disturbance.has_value();
   const bool path = result.arms.front().path.has_value();
   out << "\nArms\n";
-  Row head{{"", "", "bus"}};
-  Row names{{"arm", "joints", "load %"}};
+  Row head = {"", "", "bus"};
+  Row names = {"arm", "joints", "load %"};
   auto add = [&](const char* first, const char* second) {
-    head.cells.emplace_back(first);
-    names.cells.emplace_back(second);
+    head.emplace_back(first);
+    names.emplace_back(second);
   };
   if (disturbance) {
     add("K_r", "N m");

@@ -1,5 +1,6 @@
 #include "host/run/run_recorder.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

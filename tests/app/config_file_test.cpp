@@ -46,7 +46,8 @@ TEST(FleetFile, ThePapersFleetIsTheOneOfItsTable) {
     ASSERT_EQ(arm.joints.size(), static_cast<size_t>(dof));
     EXPECT_EQ(arm.joints.back().node_id, dof);
     EXPECT_EQ(arm.joints.back().torque_limit_Nm, dof == 2 ? 150.0 : 300.0);
-    EXPECT_EQ(arm.control.gains.K_s_Nms_rad, JointVector(JointVector::Constant(dof, dof == 2 ? 100.0 : 150.0)));
+    EXPECT_EQ(arm.control.gains.K_s_Nms_rad,
+              JointVector(JointVector::Constant(dof, dof == 2 ? 100.0 : 150.0)));
     EXPECT_EQ(arm.control.gains.K_r_Nm, JointVector(JointVector::Constant(dof, 60.0)));
     EXPECT_EQ(arm.control.gains.K_x_Ns_m, TaskVector(TaskVector::Constant(2, 50.0)));
   }
@@ -63,7 +64,8 @@ TEST(FleetFile, ThePapersGraphHasItsLaplacian) {
     EXPECT_EQ(graph.Laplacian(i, i), diagonal[i]);
     EXPECT_EQ(graph.pin(i), pins[i]);
   }
-  for (const auto& [i, j] : {std::pair{1, 0}, {1, 2}, {3, 0}, {3, 2}, {5, 4}}) EXPECT_EQ(graph.Laplacian(i, j), -1.0);
+  for (const auto& [i, j] : {std::pair{1, 0}, {1, 2}, {3, 0}, {3, 2}, {5, 4}})
+    EXPECT_EQ(graph.Laplacian(i, j), -1.0);
 }
 
 TEST(FleetFile, WhatCannotBeReadIsNamed) {
@@ -86,8 +88,9 @@ TEST(FleetFile, SixtyFourKibibytesAreReadAndNoMore) {
 
 TEST(FleetFile, GarbageIsAnErrorAndNothingElse) {
   const std::string deep(5000, '[');
-  for (const std::string& text : {std::string("\xff\xfe\x00\x01", 4), std::string(100, '\0'), "a = " + deep,
-                                  "[" + deep, std::string("a = \"\\uD800\""), std::string("a = 99999999999999999999")}) {
+  for (const std::string& text :
+       {std::string("\xff\xfe\x00\x01", 4), std::string(100, '\0'), "a = " + deep, "[" + deep,
+        std::string("a = \"\\uD800\""), std::string("a = 99999999999999999999")}) {
     std::vector<ConfigError> errors;
     EXPECT_FALSE(ParseToml(text, "garbage", &errors).has_value());
     EXPECT_EQ(errors.size(), 1u);
@@ -103,9 +106,11 @@ TEST(FleetFile, ErrorsAreWrittenAsFileLineKeyMessage) {
 TEST(FleetFile, TheEffectiveFileReadsBackToTheSameValues) {
   for (const std::vector<std::string>& sets :
        {std::vector<std::string>{},
-        {"arm.*.gravity_m_s2=9.81", "estimator.beta_1_m_s=4.000000000000001", "arm.3.base_x_m=-0.1", "name=\"a \\\"b\\\"\""},
+        {"arm.*.gravity_m_s2=9.81", "estimator.beta_1_m_s=4.000000000000001", "arm.3.base_x_m=-0.1",
+         "name=\"a \\\"b\\\"\""},
         {"estimator.leaderless=true", "topology_period_s=0.5",
-         "graph=[{edges=[{from=1,to=2,weight=0.3},{from=2,to=3},{from=3,to=4},{from=4,to=5},{from=5,to=6},{from=6,to=7}]},"
+         "graph=[{edges=[{from=1,to=2,weight=0.3},{from=2,to=3},{from=3,to=4},{from=4,to=5},{from=5,to=6},{"
+         "from=6,to=7}]},"
          "{edges=[{from=7,to=6},{from=6,to=5},{from=5,to=4},{from=4,to=3},{from=3,to=2},{from=2,to=1}]}]"}}) {
     const FleetConfig fleet = Paper(sets);
     std::ostringstream written;
@@ -152,7 +157,8 @@ TEST(Override, GoesToAllArmsByAStar) {
 }
 
 TEST(Override, ALaterOneGoesBeforeAnEarlierOne) {
-  const FleetConfig fleet = Paper({"arm.*.base_x_m=1", "arm.3.base_x_m=2", "timing.period_s=0.03", "timing.period_s=0.02"});
+  const FleetConfig fleet =
+      Paper({"arm.*.base_x_m=1", "arm.3.base_x_m=2", "timing.period_s=0.03", "timing.period_s=0.02"});
   EXPECT_EQ(fleet.arms[1].arm.base_x_m, 1.0);
   EXPECT_EQ(fleet.arms[2].arm.base_x_m, 2.0);
   EXPECT_EQ(fleet.timing.period_s, 0.02);
@@ -162,16 +168,24 @@ TEST(Override, MistakesAreErrorsOfTheCommandLine) {
   for (const auto& [set, message] : std::vector<std::pair<std::string, std::string>>{
            {"period", "--set: given \"period\", expected key=value\n"},
            {"=3", "--set: given \"=3\", expected key=value\n"},
-           {"name=a b", "--set: name: given \"a b\", expected a TOML value (a number, true, false, \"text\", a list) or a word\n"},
-           {"name=", "--set: name: given \"\", expected a TOML value (a number, true, false, \"text\", a list) or a word\n"},
-           {"name=\"a\"\nx = 1", "--set: name: given \"\\\"a\\\"\\u000ax = 1\", expected a TOML value (a number, true, false, \"text\", a list) or a word\n"},
+           {"name=a b",
+            "--set: name: given \"a b\", expected a TOML value (a number, true, false, \"text\", a list) or "
+            "a word\n"},
+           {"name=",
+            "--set: name: given \"\", expected a TOML value (a number, true, false, \"text\", a list) or a "
+            "word\n"},
+           {"name=\"a\"\nx = 1",
+            "--set: name: given \"\\\"a\\\"\\u000ax = 1\", expected a TOML value (a number, true, false, "
+            "\"text\", a list) or a word\n"},
            {"timing..period_s=1", "--set: timing..period_s: has an empty part\n"},
            {"timing.period=1", "--set: timing.period: unknown key; did you mean \"period_s\"?\n"},
            {"timming.period_s=1", "--set: timming: unknown key; did you mean \"timing\"?\n"},
            {"timing.period_s=fast", "--set: timing.period_s: given \"fast\", expected a number\n"},
            {"timing.period_s.x=1", "--set: timing.period_s.x: \"x\" lies below a single value, 0.01\n"},
-           {"arm.9.base_x_m=1", "--set: arm.9.base_x_m: no element \"9\", allowed are * or one of: 1, 2, 3, 4, 5, 6, 7\n"},
-           {"arm.6.link.2.r_m=1.2", "--set: arm.6.link.2.r_m: given 1.2 m, allowed is above 0 up to the link's l_m = 1.1 m\n"}}) {
+           {"arm.9.base_x_m=1",
+            "--set: arm.9.base_x_m: no element \"9\", allowed are * or one of: 1, 2, 3, 4, 5, 6, 7\n"},
+           {"arm.6.link.2.r_m=1.2",
+            "--set: arm.6.link.2.r_m: given 1.2 m, allowed is above 0 up to the link's l_m = 1.1 m\n"}}) {
     EXPECT_EQ(Text(ErrorsWith({set})), message);
   }
 }

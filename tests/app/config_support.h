@@ -31,17 +31,18 @@ std::string WithLine(std::string_view text, int number, const std::string& repla
 
 /// A mistake in a file and how it is to be told: all of what is wrong with it.
 struct ConfigCase {
-  std::string name;         ///< of the test
-  int line;                 ///< replaced in the base file, and the one that the error names unless `error_line` is given
+  std::string name;  ///< of the test
+  int line;  ///< replaced in the base file, and the one that the error names unless `error_line` is given
   std::string replacement;
-  std::string key;          ///< of the one error
+  std::string key;                     ///< of the one error
   std::vector<std::string> fragments;  ///< of its message
   int error_line = 0;
 };
 void PrintTo(const ConfigCase& one, std::ostream* out);
 
 /// Fails unless exactly the error of the case was reported, in `file`.
-void ExpectOneError(const ConfigCase& expected, const std::string& file, const std::vector<ConfigError>& errors);
+void ExpectOneError(const ConfigCase& expected, const std::string& file,
+                    const std::vector<ConfigError>& errors);
 
 /// All errors as text, one a line.
 std::string Text(const std::vector<ConfigError>& errors);

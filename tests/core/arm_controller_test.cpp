@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <limits>
 
 #include "tests/core/closed_loop.h"

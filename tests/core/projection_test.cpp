@@ -12,6 +12,10 @@ namespace {
 
 const ProjectionConfig kConfig;
 
+double SmallestEigenvalue(const Eigen::MatrixXd& matrix) {
+  return matrix.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
+}
+
 TEST(Projection, EndsInTheSetAndStaysThere) {
   RandomArms random(1);
   for (const PlanarArm& arm : random.AllKinds(50)) {
@@ -31,7 +35,7 @@ TEST(Projection, KeepsTheEstimatedInertiaPositiveDefinite) {
     Project(kConfig, arm, theta);
     for (int trial = 0; trial < 10; ++trial) {
       const JointMatrix H_hat = arm.Inertia(arm.At(random.Numbers(arm.dof(), 5.0)), theta);
-      EXPECT_GT(H_hat.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
+      EXPECT_GT(SmallestEigenvalue(H_hat), 0.0);
     }
   }
 }
@@ -40,9 +44,9 @@ TEST(Projection, WithoutItTheEstimateCanBeIndefinite) {
   const PlanarArm arm(PaperArm(1));
   ParameterVector theta{{1.0, 5.0, 1.0}};  // in the paper's box of starts
   const PlanarArm::Posture stretched = arm.At(JointVector::Zero(2));
-  EXPECT_LT(arm.Inertia(stretched, theta).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
+  EXPECT_LT(SmallestEigenvalue(arm.Inertia(stretched, theta)), 0.0);
   Project(kConfig, arm, theta);
-  EXPECT_GT(arm.Inertia(stretched, theta).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
+  EXPECT_GT(SmallestEigenvalue(arm.Inertia(stretched, theta)), 0.0);
 }
 
 TEST(Projection, HoldsEveryBound) {

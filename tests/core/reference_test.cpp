@@ -235,7 +235,7 @@ TEST_F(ExactDifference, TendsToTheDampedFormNearSingularities) {
   subtask.kind = SubtaskKind::kManipulability;
   for (int id = 1; id <= 7; ++id) {
     const PlanarArm arm(PaperArm(id));
-    const JointVector q = arm.dof() == 2 ? JointVector{{0.3, 0.12}} : JointVector{{0.3, 0.08, 0.05}};
+    const JointVector q = arm.dof() == 2 ? JointVector{{0.3, 0.2}} : JointVector{{0.3, 0.13, 0.1}};
     const double sigma = SigmaMin(arm, q);
     ASSERT_LT(sigma, 0.9 * kPseudoinverse.sigma_threshold_m);
     ASSERT_GT(sigma, 1e-2);

@@ -191,7 +191,7 @@ TEST(EmulatedArm, DrivesSendTheirHeartbeatsOnTime) {
   ScenarioConfig scenario = Scenario(2);
   scenario.drive.feedback_period_s = 0.01;
   Bench bench(scenario);
-  bench.AdvanceTo(0.4999);  // 0.9999 s since power-up: at 0, 0.1 .. 0.9, and every 10 ms
+  for (int k = -49; k <= 50; ++k) bench.AdvanceTo(0.01 * k - 0.0001);  // 0.9999 s since power-up, from 0 on
   EXPECT_EQ(bench.sent(), 2u * (10u + 100u));
 }
 
@@ -217,7 +217,7 @@ TEST(EmulatedArm, TimeMovesOnThroughAwkwardInstants) {
       scenario.drive.feedback_period_s = 0.0123456789;
       Bench bench(scenario, {}, start_s);
       bench.EnableAll(start_s + 0.1);
-      double t_s = start_s;
+      double t_s = start_s + 0.1;
       for (const double step_s : {1e-12, 1e-10, 1e-9, 2e-9, 0.1, 1e-17, 0.3, 1.0 / 7.0, 0.0}) {
         t_s += step_s;
         bench.AdvanceTo(t_s);

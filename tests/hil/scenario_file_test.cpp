@@ -23,7 +23,8 @@ ScenarioConfig Load(const std::string& name, const std::vector<std::string>& set
   return scenario.value_or(ScenarioConfig{});
 }
 
-void ExpectSameValues(const std::vector<EffectiveValue>& actual, const std::vector<EffectiveValue>& expected) {
+void ExpectSameValues(const std::vector<EffectiveValue>& actual,
+                      const std::vector<EffectiveValue>& expected) {
   ASSERT_EQ(actual.size(), expected.size());
   for (size_t i = 0; i < expected.size(); ++i) {
     if (expected[i].key == "fleet") continue;
@@ -56,8 +57,11 @@ TEST_P(ShippedScenario, ReadsBackFromItsEffectiveFiles) {
   std::filesystem::remove_all(directory);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::Values("paper", "benign", "leaderless", "switching", "gravity"),
-                         [](const testing::TestParamInfo<const char*>& tested) { return std::string(tested.param); });
+INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
+                         testing::Values("paper", "benign", "leaderless", "switching", "gravity"),
+                         [](const testing::TestParamInfo<const char*>& tested) {
+                           return std::string(tested.param);
+                         });
 
 TEST(Scenario, OfThePaperIsItsSection4) {
   const ScenarioConfig scenario = Load("paper");
@@ -93,7 +97,8 @@ TEST(Scenario, OverridesReachTheFleet) {
 }
 
 TEST(Scenario, TheCommandLineGoesBeforeTheFilesOverrides) {
-  const ScenarioConfig scenario = Load("gravity", {"arm.3.gravity_m_s2=1.62", "leader.axis.1.amplitude_m=0.4"});
+  const ScenarioConfig scenario =
+      Load("gravity", {"arm.3.gravity_m_s2=1.62", "leader.axis.1.amplitude_m=0.4"});
   EXPECT_EQ(scenario.fleet.arms[1].arm.gravity_m_s2, 9.81);
   EXPECT_EQ(scenario.fleet.arms[2].arm.gravity_m_s2, 1.62);
   EXPECT_EQ(scenario.leader.axes[0].amplitude_m, 0.4);
@@ -145,38 +150,100 @@ INSTANTIATE_TEST_SUITE_P(
     All, ScenarioRule,
     testing::Values(
         ConfigCase{"MissingFleet", 2, "", "fleet", {"missing"}, 1},
-        ConfigCase{"FleetThatIsNotThere", 2, "fleet = \"nowhere.toml\"", "fleet", {"\"nowhere.toml\"", "no file"}},
+        ConfigCase{
+            "FleetThatIsNotThere", 2, "fleet = \"nowhere.toml\"", "fleet", {"\"nowhere.toml\"", "no file"}},
         ConfigCase{"UnknownKey", 3, "second = 30.0", "second", {"\"seconds\""}},
         ConfigCase{"UnknownOverride", 13, "\"timming.period_s\" = 0.01", "timming.period_s", {"\"timing\""}},
-        ConfigCase{"UnknownOverrideBelowATable", 13, "\"timing.perod_s\" = 0.01", "timing.perod_s", {"\"period_s\""}},
-        ConfigCase{"OverrideOfWrongType", 13, "\"timing.period_s\" = true", "timing.period_s", {"given true", "a number"}},
-        ConfigCase{"OverrideOutOfRange", 13, "\"plant.step_s\" = 0.002", "plant.step_s", {"0.002", "0.001 s"}},
-        ConfigCase{"OverrideOfAnUnknownArm", 13, "\"arm.9.base_x_m\" = 1", "arm.9.base_x_m", {"\"9\"", "1, 2, 3"}},
+        ConfigCase{"UnknownOverrideBelowATable",
+                   13,
+                   "\"timing.perod_s\" = 0.01",
+                   "timing.perod_s",
+                   {"\"period_s\""}},
+        ConfigCase{"OverrideOfWrongType",
+                   13,
+                   "\"timing.period_s\" = true",
+                   "timing.period_s",
+                   {"given true", "a number"}},
+        ConfigCase{
+            "OverrideOutOfRange", 13, "\"plant.step_s\" = 0.002", "plant.step_s", {"0.002", "0.001 s"}},
+        ConfigCase{
+            "OverrideOfAnUnknownArm", 13, "\"arm.9.base_x_m\" = 1", "arm.9.base_x_m", {"\"9\"", "1, 2, 3"}},
         ConfigCase{"OverrideWithoutQuotes", 13, "timing.perod_s = 1", "timing.perod_s", {"\"period_s\""}},
-        ConfigCase{"WindowBeyondTheEnd", 4, "window_start_s = 30", "window_start_s", {"given 30 s", "below seconds = 30 s"}},
-        ConfigCase{"UnknownLeader", 5, "[leader]\nkind = \"circle\"", "leader.kind", {"\"circle\"", "\"waypoints\""}, 6},
+        ConfigCase{"WindowBeyondTheEnd",
+                   4,
+                   "window_start_s = 30",
+                   "window_start_s",
+                   {"given 30 s", "below seconds = 30 s"}},
+        ConfigCase{"UnknownLeader",
+                   5,
+                   "[leader]\nkind = \"circle\"",
+                   "leader.kind",
+                   {"\"circle\"", "\"waypoints\""},
+                   6},
         ConfigCase{"LeaderOfAnotherDimension", 6, "axis = [", "leader.axis", {"given 1", "2"}},
-        ConfigCase{"NoWaypoints", 5, "[leader]\nkind = \"waypoints\"", "leader.waypoints_m", {"no waypoint"}, 5},
-        ConfigCase{"WaypointInSpace", 5, "[leader]\nkind = \"waypoints\"\nwaypoints_m = [[1, 1], [1, 1.2, 1]]",
-                   "leader.waypoints_m.2", {"given 3 numbers", "2"}, 7},
-        ConfigCase{"NoLeader", 5, "[leader]\nkind = \"none\"", "leader.kind",
-                   {"given \"none\"", "leaderless = false"}, 6},
-        ConfigCase{"AgreementWithALeader", 11, "kind = \"agreement\"", "criterion.kind", {"\"agreement\"", "\"tracking\""}},
-        ConfigCase{"SpeedBeyondA2", 13, "\"estimator.beta_1_m_s\" = 1.88", "estimator.beta_1_m_s",
+        ConfigCase{
+            "NoWaypoints", 5, "[leader]\nkind = \"waypoints\"", "leader.waypoints_m", {"no waypoint"}, 5},
+        ConfigCase{"WaypointInSpace",
+                   5,
+                   "[leader]\nkind = \"waypoints\"\nwaypoints_m = [[1, 1], [1, 1.2, 1]]",
+                   "leader.waypoints_m.2",
+                   {"given 3 numbers", "2"},
+                   7},
+        ConfigCase{"NoLeader",
+                   5,
+                   "[leader]\nkind = \"none\"",
+                   "leader.kind",
+                   {"given \"none\"", "leaderless = false"},
+                   6},
+        ConfigCase{"AgreementWithALeader",
+                   11,
+                   "kind = \"agreement\"",
+                   "criterion.kind",
+                   {"\"agreement\"", "\"tracking\""}},
+        ConfigCase{"SpeedBeyondA2",
+                   13,
+                   "\"estimator.beta_1_m_s\" = 1.88",
+                   "estimator.beta_1_m_s",
                    {"given 1.88 m/s", "1.2 times the leader's 1.571 m/s", "1.885"}},
-        ConfigCase{"AccelerationBeyondA2", 13, "\"estimator.beta_2_m_s2\" = 5.9", "estimator.beta_2_m_s2",
+        ConfigCase{"AccelerationBeyondA2",
+                   13,
+                   "\"estimator.beta_2_m_s2\" = 5.9",
+                   "estimator.beta_2_m_s2",
                    {"given 5.9 m/s^2", "1.2 times the leader's 4.935 m/s^2"}},
-        ConfigCase{"JerkBeyondA2", 13, "\"estimator.beta_3_m_s3\" = 18.6", "estimator.beta_3_m_s3",
+        ConfigCase{"JerkBeyondA2",
+                   13,
+                   "\"estimator.beta_3_m_s3\" = 18.6",
+                   "estimator.beta_3_m_s3",
                    {"given 18.6 m/s^3", "1.2 times the leader's 15.503 m/s^3"}},
-        ConfigCase{"LeaderBeyondReach", 15, "\"arm.5.base_x_m\" = -0.02", "leader",
-                   {"arm 5", "t = 0.348 s", "2.199 m from its base", "0.21 to 2.195 m"}, 5},
-        ConfigCase{"LeaderWithinTheInnerEdge", 15, "\"arm.1.base_x_m\" = 1.2\n\"arm.1.base_y_m\" = 1", "leader", {"arm 1", "0.51 to 2.295 m"}, 5},
-        ConfigCase{"WatchdogWithinThePeriod", 8, "[drive]\nwatchdog_s = 0.01\n[start]", "drive.watchdog_s",
-                   {"given 0.01 s", "above timing.period_s = 0.01 s"}, 9},
-        ConfigCase{"PlantStepBeyondThePeriod", 13,
-                   "timing = { period_s = 5e-4, sample_to_torque_s = 0, feedback_timeout_s = 4e-4 }", "plant.step_s",
-                   {"given 0.001 s", "at most timing.period_s = 5e-04 s"}, 1},
-        ConfigCase{"CentreInSpace", 9, "zeta_x_centre_m = [1, 1, 1]", "start.zeta_x_centre_m", {"given 3 values", "2"}}),
+        ConfigCase{"LeaderBeyondReach",
+                   15,
+                   "\"arm.5.base_x_m\" = -0.02",
+                   "leader",
+                   {"arm 5", "t = 0.348 s", "2.199 m from its base", "0.21 to 2.195 m"},
+                   5},
+        ConfigCase{"LeaderWithinTheInnerEdge",
+                   15,
+                   "\"arm.1.base_x_m\" = 1.2\n\"arm.1.base_y_m\" = 1",
+                   "leader",
+                   {"arm 1", "0.51 to 2.295 m"},
+                   5},
+        ConfigCase{"WatchdogWithinThePeriod",
+                   8,
+                   "[drive]\nwatchdog_s = 0.01\n[start]",
+                   "drive.watchdog_s",
+                   {"given 0.01 s", "above timing.period_s = 0.01 s"},
+                   9},
+        ConfigCase{"PlantStepBeyondThePeriod",
+                   13,
+                   "timing = { period_s = 5e-4, sample_to_torque_s = 0, feedback_timeout_s = 4e-4 }",
+                   "plant.step_s",
+                   {"given 0.001 s", "at most timing.period_s = 5e-04 s"},
+                   1},
+        ConfigCase{"CentreInSpace",
+                   9,
+                   "zeta_x_centre_m = [1, 1, 1]",
+                   "start.zeta_x_centre_m",
+                   {"given 3 values", "2"}}),
     [](const testing::TestParamInfo<ConfigCase>& tested) { return tested.param.name; });
 
 std::string ErrorsOfLeaderless(const std::vector<std::string>& sets) {
@@ -186,21 +253,26 @@ std::string ErrorsOfLeaderless(const std::vector<std::string>& sets) {
 }
 
 TEST(Scenario, OfALeaderlessFleetHasNoLeaderAndAgrees) {
-  EXPECT_NE(ErrorsOfLeaderless({"leader.kind=waypoints", "leader.waypoints_m=[[1,1]]"}).find("leader.kind: given \"waypoints\""),
+  EXPECT_NE(ErrorsOfLeaderless({"leader.kind=waypoints", "leader.waypoints_m=[[1,1]]"})
+                .find("leader.kind: given \"waypoints\""),
             std::string::npos);
   EXPECT_NE(ErrorsOfLeaderless({"criterion.kind=tracking"}).find("is \"agreement\""), std::string::npos);
-  EXPECT_NE(ErrorsOfLeaderless({"start.kind=near_leader"}).find("start.kind: given \"near_leader\""), std::string::npos);
+  EXPECT_NE(ErrorsOfLeaderless({"start.kind=near_leader"}).find("start.kind: given \"near_leader\""),
+            std::string::npos);
 }
 
 TEST(Scenario, OfALeaderlessFleetAgreesWithinReach) {
-  EXPECT_NE(ErrorsOfLeaderless({"start.zeta_range=0.7"}).find("arm 5 may not reach the agreed point"), std::string::npos);
-  EXPECT_NE(ErrorsOfLeaderless({"start.zeta_x_centre_m=0.6"}).find("arm 1 may not reach the agreed point"), std::string::npos);
+  EXPECT_NE(ErrorsOfLeaderless({"start.zeta_range=0.7"}).find("arm 5 may not reach the agreed point"),
+            std::string::npos);
+  EXPECT_NE(ErrorsOfLeaderless({"start.zeta_x_centre_m=0.6"}).find("arm 1 may not reach the agreed point"),
+            std::string::npos);
 }
 
 TEST(Scenario, MistakesOfScenarioAndFleetAreReportedTogether) {
   std::vector<ConfigError> errors;
   EXPECT_FALSE(LoadScenario(kSource + "/hil/scenarios/paper.toml",
-                            {"seconds=0", "arm.1.bus=can0", "nothing=1", "control.law=none", "nonsense"}, &errors));
+                            {"seconds=0", "arm.1.bus=can0", "nothing=1", "control.law=none", "nonsense"},
+                            &errors));
   EXPECT_EQ(errors.size(), 5u) << Text(errors);
 }
 
@@ -210,7 +282,8 @@ TEST(Scenario, AMistakeInTheFleetFileHasTheFleetFilesLine) {
   const TemporaryFile file(text.replace(text.find("FLEET"), 5, "fleet.toml"));
   std::vector<ConfigError> errors;
   EXPECT_FALSE(LoadScenario(file.path(), {"arm=[]"}, &errors).has_value());
-  EXPECT_NE(Text(errors).find(fleet.path() + ":2: nme: unknown key; did you mean \"name\"?"), std::string::npos)
+  EXPECT_NE(Text(errors).find(fleet.path() + ":2: nme: unknown key; did you mean \"name\"?"),
+            std::string::npos)
       << Text(errors);
 }
 
@@ -226,7 +299,8 @@ TEST(ParameterReference, IsTheOneInTheDocs) {
   std::ifstream stream(kSource + "/docs/parameters.md");
   std::stringstream committed;
   committed << stream.rdbuf();
-  EXPECT_EQ(committed.str(), wanted.str()) << "docs/parameters.md is out of date: armada params > docs/parameters.md";
+  EXPECT_EQ(committed.str(), wanted.str())
+      << "docs/parameters.md is out of date: armada params > docs/parameters.md";
 }
 
 }  // namespace

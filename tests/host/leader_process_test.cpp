@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "firmware/app/realtime.h"
 #include "firmware/link/channels.h"
@@ -67,7 +67,7 @@ class LeaderProcess : public PrivateNetworkTest {
     return messages;
   }
 
-  std::string log_path_ = ::testing::TempDir() + "armada_leader_test.log";
+  std::string log_path_ = ::testing::TempDir() + "armada_leader_" + std::to_string(getpid()) + ".log";
   std::unique_ptr<LcmEndpoint> listener_;
   ProcessGroup group_;
 };

@@ -49,16 +49,18 @@ class ArmRules {
     const ConfigCursor links = at_.At("link");
     if (!IsClean(links, *errors_)) return false;
     if (arm_.link.empty() || arm_.link.size() > size_t{kMaxDof}) {
-      Report(links, "given " + std::to_string(arm_.link.size()) + " links, allowed are 1 to " + std::to_string(kMaxDof),
-             errors_);
+      Report(
+          links,
+          "given " + std::to_string(arm_.link.size()) + " links, allowed are 1 to " + std::to_string(kMaxDof),
+          errors_);
       return false;
     }
     for (size_t i = 0; i < arm_.link.size(); ++i) {
       const LinkConfig& link = arm_.link[i];
       if (link.r_m <= link.l_m) continue;
       Report(links.Element(i).At("r_m"),
-             "given " + ValueText(link.r_m) + " m, allowed is above 0 up to the link's l_m = " + ValueText(link.l_m) +
-                 " m",
+             "given " + ValueText(link.r_m) +
+                 " m, allowed is above 0 up to the link's l_m = " + ValueText(link.l_m) + " m",
              errors_);
     }
     return true;
@@ -70,13 +72,15 @@ class ArmRules {
     const auto limits = arm_.torque_limit_Nm.size();
     if (limits > 1 && limits != dof()) {
       Report(at_.At("torque_limit_Nm"),
-             "given " + std::to_string(limits) + " values, allowed are 1 or one a joint, " + std::to_string(dof()),
+             "given " + std::to_string(limits) + " values, allowed are 1 or one a joint, " +
+                 std::to_string(dof()),
              errors_);
       return;
     }
     if (arm_.joint.size() != arm_.link.size()) {
       Report(joints,
-             "given " + std::to_string(arm_.joint.size()) + " joints, expected one a link, " + std::to_string(dof()),
+             "given " + std::to_string(arm_.joint.size()) + " joints, expected one a link, " +
+                 std::to_string(dof()),
              errors_);
       return;
     }
@@ -87,7 +91,8 @@ class ArmRules {
     const JointDriveConfig& joint = arm_.joint[i];
     const ConfigCursor limit = (at.found() ? at : at_).At("torque_limit_Nm");
     if (std::isnan(joint.torque_limit_Nm) && IsClean(limit, *errors_)) {
-      Report(limit, "missing; it is the largest torque of the joint, here or for all joints of the arm", errors_);
+      Report(limit, "missing; it is the largest torque of the joint, here or for all joints of the arm",
+             errors_);
     }
     if (std::abs(joint.direction) != 1.0) {
       Report(at.At("direction"), "given " + ValueText(joint.direction) + ", allowed are 1 and -1", errors_);
@@ -105,8 +110,8 @@ class ArmRules {
   void CheckCount(const char* key, Eigen::Index count, int wanted, const char* of) {
     if (count == 1 || count == wanted) return;
     Report(Control(key),
-           "given " + std::to_string(count) + " values, allowed for arm " + std::to_string(arm_.id) + " are 1 or one " +
-               of + ", " + std::to_string(wanted),
+           "given " + std::to_string(count) + " values, allowed for arm " + std::to_string(arm_.id) +
+               " are 1 or one " + of + ", " + std::to_string(wanted),
            errors_);
   }
 
@@ -139,13 +144,13 @@ class ArmRules {
     if (subtask.kind == SubtaskKind::kNone) return;
     if (dof() <= PlanarArm::kTaskDim) {
       Report(Control("subtask.kind"),
-             "given " + ValueText(subtask.kind) + ", which needs more than 2 joints; arm " + std::to_string(arm_.id) +
-                 " has " + std::to_string(dof()) + ": allowed is \"none\"",
+             "given " + ValueText(subtask.kind) + ", which needs more than 2 joints; arm " +
+                 std::to_string(arm_.id) + " has " + std::to_string(dof()) + ": allowed is \"none\"",
              errors_);
     } else if (subtask.joint > dof()) {
       Report(Control("subtask.joint"),
-             "given " + std::to_string(subtask.joint) + ", allowed for arm " + std::to_string(arm_.id) + " is 1 to " +
-                 std::to_string(dof()),
+             "given " + std::to_string(subtask.joint) + ", allowed for arm " + std::to_string(arm_.id) +
+                 " is 1 to " + std::to_string(dof()),
              errors_);
     }
   }
@@ -155,8 +160,8 @@ class ArmRules {
     const auto check = [&](const std::string& quantity, const char* unit, double min, double max) {
       if (min < max) return true;
       Report(Control("projection." + quantity + "_min_" + unit),
-             "given " + ValueText(min) + ", allowed is below projection." + quantity + "_max_" + unit + " = " +
-                 ValueText(max),
+             "given " + ValueText(min) + ", allowed is below projection." + quantity + "_max_" + unit +
+                 " = " + ValueText(max),
              errors_);
       return false;
     };
@@ -173,8 +178,8 @@ class ArmRules {
     const double outer = arm.reach_max_m() - reference.reach_outer_margin_m;
     if (inner < outer) return;
     Report(Control("reference.reach_inner_margin_m"),
-           "with both margins arm " + std::to_string(arm_.id) + " has no reach left: " + RoundedText(inner) + " to " +
-               RoundedText(outer) + " m; allowed is less together than " +
+           "with both margins arm " + std::to_string(arm_.id) + " has no reach left: " + RoundedText(inner) +
+               " to " + RoundedText(outer) + " m; allowed is less together than " +
                RoundedText(arm.reach_max_m() - arm.reach_min_m()) + " m",
            errors_);
   }
@@ -193,7 +198,8 @@ class ArmRules {
       if (D_aa < set.inertia_min_kgm2) ReportTooHigh("inertia_min_kgm2", set.inertia_min_kgm2, name, D_aa);
       if (D_aa > set.inertia_max_kgm2) ReportTooLow("inertia_max_kgm2", set.inertia_max_kgm2, name, D_aa);
       for (int b = a + 1; b < n; ++b) {
-        const double correlation = std::abs(theta[arm.InertiaIndex(a, b)]) / std::sqrt(D_aa * theta[arm.InertiaIndex(b, b)]);
+        const double correlation =
+            std::abs(theta[arm.InertiaIndex(a, b)]) / std::sqrt(D_aa * theta[arm.InertiaIndex(b, b)]);
         coupling = std::max(coupling, (n - 1) * correlation);
       }
     }
@@ -202,7 +208,8 @@ class ArmRules {
     }
     for (int p = arm.InertiaParameterCount(); p < arm.parameter_count(); ++p) {
       const std::string name = "G_" + std::to_string(p - arm.InertiaParameterCount() + 1);
-      if (theta[p] > set.gravity_max_kgm) ReportTooLow("gravity_max_kgm", set.gravity_max_kgm, name, theta[p]);
+      if (theta[p] > set.gravity_max_kgm)
+        ReportTooLow("gravity_max_kgm", set.gravity_max_kgm, name, theta[p]);
     }
   }
 
@@ -216,8 +223,8 @@ class ArmRules {
   void ReportBound(const std::string& bound, double given, const std::string& parameter, double actual,
                    const std::string& allowed) {
     Report(Control("projection." + bound),
-           "given " + ValueText(given) + ", but the links of arm " + std::to_string(arm_.id) + " have " + parameter +
-               " = " + RoundedText(actual) + ": allowed is " + allowed,
+           "given " + ValueText(given) + ", but the links of arm " + std::to_string(arm_.id) + " have " +
+               parameter + " = " + RoundedText(actual) + ": allowed is " + allowed,
            errors_);
   }
 
@@ -230,7 +237,8 @@ class ArmRules {
 
 }  // namespace
 
-void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root, std::vector<ConfigError>* errors) {
+void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root,
+              std::vector<ConfigError>* errors) {
   ArmRules(fleet, fleet.arm[index], root, root.At("arm").Element(index), errors).CheckAll();
 }
 

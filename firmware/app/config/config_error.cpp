@@ -20,7 +20,8 @@ void PrintErrors(const std::vector<ConfigError>& errors, std::ostream& out) {
 void SortByPlace(std::vector<ConfigError>* errors, size_t first) {
   std::vector<std::string> files;
   for (size_t i = first; i < errors->size(); ++i) {
-    if (std::find(files.begin(), files.end(), (*errors)[i].file) == files.end()) files.push_back((*errors)[i].file);
+    if (std::find(files.begin(), files.end(), (*errors)[i].file) == files.end())
+      files.push_back((*errors)[i].file);
   }
   const auto rank = [&](const ConfigError& error) {
     return std::pair(std::find(files.begin(), files.end(), error.file) - files.begin(), error.line);

@@ -17,7 +17,8 @@ std::string Joined(const std::string& key, std::string_view label) {
 
 const ConfigNode* ConfigNode::Find(std::string_view child_key) const {
   if (kind != Kind::kTable) return nullptr;
-  const auto child = std::find_if(children.begin(), children.end(), [&](const auto& c) { return c.key == child_key; });
+  const auto child =
+      std::find_if(children.begin(), children.end(), [&](const auto& c) { return c.key == child_key; });
   return child == children.end() ? nullptr : &*child;
 }
 
@@ -27,16 +28,23 @@ ConfigNode* ConfigNode::Find(std::string_view child_key) {
 
 std::string ConfigNode::Describe() const {
   switch (kind) {
-    case Kind::kTable: return "a table";
-    case Kind::kBool: return ValueText(std::get<bool>(value));
-    case Kind::kInteger: return std::to_string(std::get<int64_t>(value));
-    case Kind::kReal: return ValueText(std::get<double>(value));
-    case Kind::kOther: return std::get<std::string>(value);
+    case Kind::kTable:
+      return "a table";
+    case Kind::kBool:
+      return ValueText(std::get<bool>(value));
+    case Kind::kInteger:
+      return std::to_string(std::get<int64_t>(value));
+    case Kind::kReal:
+      return ValueText(std::get<double>(value));
+    case Kind::kOther:
+      return std::get<std::string>(value);
     case Kind::kText: {
       const std::string& text = std::get<std::string>(value);
-      return text.size() <= kMaxDescription ? ValueText(text) : ValueText(text.substr(0, kMaxDescription)) + "...";
+      return text.size() <= kMaxDescription ? ValueText(text)
+                                            : ValueText(text.substr(0, kMaxDescription)) + "...";
     }
-    case Kind::kArray: break;
+    case Kind::kArray:
+      break;
   }
   std::string text = "[";
   for (const ConfigNode& child : children) {

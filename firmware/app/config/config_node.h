@@ -10,7 +10,8 @@
 
 namespace armada {
 
-/// A value of a configuration file with its place: TOML after parsing, before anything is known about its meaning.
+/// A value of a configuration file with its place: TOML after parsing, before anything is known about its
+/// meaning.
 struct ConfigNode {
   enum class Kind { kTable, kArray, kBool, kInteger, kReal, kText, kOther };
 
@@ -28,11 +29,12 @@ struct ConfigNode {
   std::string Describe() const;
 };
 
-/// How element `index` of an array is called in keys: by its `id` if it is a table that has one, else by its number
-/// from 1.
+/// How element `index` of an array is called in keys: by its `id` if it is a table that has one, else by its
+/// number from 1.
 std::string ElementLabel(const ConfigNode& element, size_t index);
 
-/// A dotted key resolved in a tree as far as it goes: what a reader or a rule complains about. The tree must outlive it.
+/// A dotted key resolved in a tree as far as it goes: what a reader or a rule complains about. The tree must
+/// outlive it.
 class ConfigCursor {
  public:
   explicit ConfigCursor(const ConfigNode& root) : node_(&root) {}
@@ -58,7 +60,8 @@ class ConfigCursor {
 /// Adds an error at the cursor's place.
 void Report(const ConfigCursor& at, std::string message, std::vector<ConfigError>* errors);
 
-/// False when an error was reported at the cursor's key or below it: rules that build on the value then have no say.
+/// False when an error was reported at the cursor's key or below it: rules that build on the value then have
+/// no say.
 bool IsClean(const ConfigCursor& at, const std::vector<ConfigError>& errors);
 
 }  // namespace armada

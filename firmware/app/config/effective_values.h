@@ -18,7 +18,8 @@ struct EffectiveValue {
 /// Visitor that lists every value below a Config struct.
 class ValueLister {
  public:
-  ValueLister(std::string prefix, std::vector<EffectiveValue>* values) : prefix_(std::move(prefix)), values_(values) {}
+  ValueLister(std::string prefix, std::vector<EffectiveValue>* values)
+      : prefix_(std::move(prefix)), values_(values) {}
 
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {

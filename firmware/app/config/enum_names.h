@@ -14,8 +14,8 @@
 
 namespace armada {
 
-// Names of the kinds that a configuration chooses between. An overload of EnumNames, found by the kind's namespace, is
-// all that a kind needs in order to be read, written and documented.
+// Names of the kinds that a configuration chooses between. An overload of EnumNames, found by the kind's
+// namespace, is all that a kind needs in order to be read, written and documented.
 
 constexpr auto EnumNames(EstimatorKind) {
   using enum EstimatorKind;
@@ -41,11 +41,14 @@ constexpr auto EnumNames(SubtaskKind) {
 }
 
 constexpr auto EnumNames(DriveProfile) {
-  return std::to_array<std::pair<DriveProfile, std::string_view>>({{DriveProfile::kODriveCanSimple, "odrive_cansimple"}});
+  return std::to_array<std::pair<DriveProfile, std::string_view>>(
+      {{DriveProfile::kODriveCanSimple, "odrive_cansimple"}});
 }
 
 template <class Enum>
-concept NamedEnum = requires(Enum value) { EnumNames(value).front().second; };
+concept NamedEnum = requires(Enum value) {
+  EnumNames(value).front().second;
+};
 
 template <NamedEnum Enum>
 std::string_view NameOf(Enum value) {

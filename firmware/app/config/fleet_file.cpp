@@ -75,6 +75,8 @@ std::vector<EffectiveValue> EffectiveValues(const FleetConfig& fleet) {
   return ListValues(&layout);
 }
 
-std::vector<std::string> FleetKeys() { return KeysOf<FleetLayout>(); }
+std::vector<std::string> FleetKeys() {
+  return KeysOf<FleetLayout>();
+}
 
 }  // namespace armada

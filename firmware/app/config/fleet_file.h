@@ -13,8 +13,8 @@
 
 namespace armada {
 
-/// Reads a fleet file (layout: firmware/fleets/paper.toml, keys: docs/parameters.md), with `key=value` overrides on top.
-/// Nothing, and every error that was found, when the file breaks a rule. Start-up only.
+/// Reads a fleet file (layout: firmware/fleets/paper.toml, keys: docs/parameters.md), with `key=value`
+/// overrides on top. Nothing, and every error that was found, when the file breaks a rule. Start-up only.
 std::optional<FleetConfig> LoadFleet(const std::string& path, const std::vector<std::string>& sets,
                                      std::vector<ConfigError>* errors);
 

@@ -61,7 +61,8 @@ FleetConfig FleetOf(const FleetLayout& layout, const std::string& file) {
   fleet.link = layout.link;
   std::transform(layout.arm.begin(), layout.arm.end(), std::back_inserter(fleet.arms), EntryOf);
   for (const GraphLayout& graph : layout.graph) {
-    fleet.topologies.push_back({{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}});
+    fleet.topologies.push_back(
+        {{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}});
   }
   fleet.topology_period_s = layout.topology_period_s;
   return fleet;

@@ -51,18 +51,23 @@ struct ArmLayout {
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"id", "", 1, kMaxArms, "number of the arm, unique in the fleet"}, id);
-    parameter({"bus", "", 0, 0, "arm's own CAN bus: udp:<group>:<port> or socketcan:<interface>"}, bus);
+    parameter({"bus", "", 0, 0, "arm's own CAN bus: udp:GROUP:PORT or socketcan:INTERFACE"}, bus);
     parameter({"drive", "", 0, 0, "profile that the arm's drives speak"}, drive);
     parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque of a joint: one value, or one a joint"},
               torque_limit_Nm);
     arm.Visit(parameter);
-    parameter.List({"link", "a link, 1 to 7 from the base outwards"}, link);
-    parameter.List({"joint", "wiring of a joint, one a link; what is left out: node ids 1, 2, .. and the arm's torque limit"}, joint,
-                   [this](size_t i) { return JointPrototype(i); });
+    parameter.List({"link", "a link, 1 to 7 from the base outwards"}, link, [](size_t) {
+      return LinkConfig{0.0, 0.0, 0.0, 0.0};
+    });  // none has a default
+    parameter.List(
+        {"joint",
+         "wiring of a joint, one a link; what is left out: node ids 1, 2, .. and the arm's torque limit"},
+        joint, [this](size_t i) { return JointPrototype(i); });
     parameter.Table("control", control);
   }
 
-  /// Joint i, from 0, where the file says nothing of it. Its torque limit is NaN if the arm gives none for it.
+  /// Joint i, from 0, where the file says nothing of it. Its torque limit is NaN if the arm gives none for
+  /// it.
   JointDriveConfig JointPrototype(size_t i) const;
 };
 

@@ -14,8 +14,8 @@ void CheckTiming(const TimingConfig& timing, const ConfigCursor& at, Errors* err
   const auto check = [&](const char* key, double given_s, bool good, const char* side) {
     if (good) return;
     Report(at.At(key),
-           "given " + ValueText(given_s) + " s, allowed is " + side + " timing.period_s = " + ValueText(timing.period_s) +
-               " s",
+           "given " + ValueText(given_s) + " s, allowed is " + side +
+               " timing.period_s = " + ValueText(timing.period_s) + " s",
            errors);
   };
   const double h = timing.period_s;
@@ -38,14 +38,16 @@ size_t EarlierArm(const FleetLayout& fleet, size_t index, Same same) {
   return 0;
 }
 
-bool SameId(const ArmLayout& a, const ArmLayout& b) { return a.id == b.id; }
+bool SameId(const ArmLayout& a, const ArmLayout& b) {
+  return a.id == b.id;
+}
 
 bool SameBus(const ArmLayout& a, const ArmLayout& b) {
   std::string ignored;
   const auto bus_a = ParseBusName(a.bus, &ignored);
   const auto bus_b = ParseBusName(b.bus, &ignored);
-  return bus_a && bus_b && bus_a->kind == bus_b->kind && bus_a->group == bus_b->group && bus_a->port == bus_b->port &&
-         bus_a->interface_name == bus_b->interface_name;
+  return bus_a && bus_b && bus_a->kind == bus_b->kind && bus_a->group == bus_b->group &&
+         bus_a->port == bus_b->port && bus_a->interface_name == bus_b->interface_name;
 }
 
 void CheckUnique(const FleetLayout& fleet, const ConfigCursor& arms, Errors* errors) {
@@ -54,7 +56,8 @@ void CheckUnique(const FleetLayout& fleet, const ConfigCursor& arms, Errors* err
     const ConfigCursor at = arms.Element(i);
     const auto line_of = [&](size_t number) { return std::to_string(arms.Element(number - 1).node().line); };
     if (const size_t earlier = EarlierArm(fleet, i, SameId); earlier > 0 && arm.id != 0) {
-      Report(at.At("id"), "given " + std::to_string(arm.id) + ", the id of the arm in line " + line_of(earlier) + ", too",
+      Report(at.At("id"),
+             "given " + std::to_string(arm.id) + ", the id of the arm in line " + line_of(earlier) + ", too",
              errors);
     }
     if (const size_t earlier = EarlierArm(fleet, i, SameBus); earlier > 0) {
@@ -73,10 +76,13 @@ void CheckFleet(const FleetLayout& fleet, const ConfigCursor& root, Errors* erro
   CheckLcmUrl(fleet.link, root.At("link.lcm_url"), errors);
 
   const ConfigCursor arms = root.At("arm");
-  if (fleet.arm.empty() && IsClean(arms, *errors)) Report(arms, "no arm is given, allowed are 1 to 64 [[arm]]", errors);
+  if (fleet.arm.empty() && IsClean(arms, *errors))
+    Report(arms, "no arm is given, allowed are 1 to 64 [[arm]]", errors);
   if (fleet.arm.size() > size_t{kMaxArms}) {
-    Report(arms, "given " + std::to_string(fleet.arm.size()) + " arms, allowed are 1 to " + std::to_string(kMaxArms),
-           errors);
+    Report(
+        arms,
+        "given " + std::to_string(fleet.arm.size()) + " arms, allowed are 1 to " + std::to_string(kMaxArms),
+        errors);
     return;
   }
   CheckUnique(fleet, arms, errors);

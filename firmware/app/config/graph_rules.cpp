@@ -16,7 +16,8 @@ std::string AllIds(const FleetLayout& fleet) {
 }
 
 bool CheckArmId(const FleetLayout& fleet, int id, const ConfigCursor& at, Errors* errors) {
-  if (std::any_of(fleet.arm.begin(), fleet.arm.end(), [&](const ArmLayout& arm) { return arm.id == id; })) return true;
+  if (std::any_of(fleet.arm.begin(), fleet.arm.end(), [&](const ArmLayout& arm) { return arm.id == id; }))
+    return true;
   Report(at, "given " + std::to_string(id) + ", allowed are the arms " + AllIds(fleet), errors);
   return false;
 }
@@ -44,7 +45,9 @@ bool CheckParts(const FleetLayout& fleet, const GraphLayout& graph, const Config
       good = false;
     }
     if (!linked.insert({edge.from, edge.to}).second) {
-      Report(place, "given from arm " + std::to_string(edge.from) + " to arm " + std::to_string(edge.to) + " twice", errors);
+      Report(place,
+             "given from arm " + std::to_string(edge.from) + " to arm " + std::to_string(edge.to) + " twice",
+             errors);
       good = false;
     }
   }
@@ -60,17 +63,21 @@ void CheckA1(const FleetConfig& fleet, size_t topology, const ConfigCursor& at, 
   }
   if (unreached.empty()) return;
   Report(at,
-         "the leader does not reach arm " + unreached + "; assumption A1 asks for a path of pins and edges to every arm",
+         "the leader does not reach arm " + unreached +
+             "; assumption A1 asks for a path of pins and edges to every arm",
          errors);
 }
 
 void CheckLeaderless(const FleetConfig& fleet, size_t topology, const ConfigCursor& at, Errors* errors) {
   const Digraph graph = fleet.Graph(topology);
   if (graph.HasPin()) {
-    Report(at.At("pins"), "given pins in a fleet with estimator.leaderless = true, which has no leader to pin to", errors);
+    Report(at.At("pins"),
+           "given pins in a fleet with estimator.leaderless = true, which has no leader to pin to", errors);
   }
   if (!graph.HasSpanningTree()) {
-    Report(at, "no arm has a path of edges to every other one, which Corollary 2 asks for (estimator.leaderless = true)",
+    Report(at,
+           "no arm has a path of edges to every other one, which Corollary 2 asks for (estimator.leaderless "
+           "= true)",
            errors);
   }
 }
@@ -84,8 +91,8 @@ void CheckSchedule(const FleetLayout& fleet, const ConfigCursor& root, Errors* e
   }
   if (several && fleet.topology_period_s < fleet.timing.period_s) {
     Report(at,
-           given + " for " + std::to_string(fleet.graph.size()) + " [[graph]], allowed is at least timing.period_s = " +
-               ValueText(fleet.timing.period_s) + " s",
+           given + " for " + std::to_string(fleet.graph.size()) +
+               " [[graph]], allowed is at least timing.period_s = " + ValueText(fleet.timing.period_s) + " s",
            errors);
   }
 }
@@ -131,7 +138,8 @@ void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, Errors* err
     const GraphLayout& graph = fleet.graph[i];
     const ConfigCursor at = graphs.Element(i);
     if (!CheckParts(fleet, graph, at, errors)) continue;
-    arms_and_graphs.topologies = {{{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}}};
+    arms_and_graphs.topologies = {
+        {{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}}};
     if (!IsClean(root.At("estimator.leaderless"), *errors)) continue;
     fleet.estimator.leaderless ? CheckLeaderless(arms_and_graphs, 0, at, errors)
                                : CheckA1(arms_and_graphs, 0, at, errors);

@@ -53,9 +53,12 @@ class Application {
     const std::string_view rest = dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
     if (label.empty()) return Fail("has an empty part");
     switch (node->kind) {
-      case ConfigNode::Kind::kTable: return IntoTable(node, label, rest);
-      case ConfigNode::Kind::kArray: return IntoArray(node, label, rest);
-      default: return Fail("\"" + std::string(label) + "\" lies below a single value, " + node->Describe());
+      case ConfigNode::Kind::kTable:
+        return IntoTable(node, label, rest);
+      case ConfigNode::Kind::kArray:
+        return IntoArray(node, label, rest);
+      default:
+        return Fail("\"" + std::string(label) + "\" lies below a single value, " + node->Describe());
     }
   }
 

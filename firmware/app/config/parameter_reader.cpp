@@ -29,7 +29,8 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo&, bool* value, std::v
   return true;
 }
 
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, double* value, std::vector<ConfigError>* errors) {
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, double* value,
+               std::vector<ConfigError>* errors) {
   const ConfigNode& node = at.node();
   if (node.kind != Kind::kReal && node.kind != Kind::kInteger) return Expected(at, "a number", errors);
   const double given = node.kind == Kind::kReal ? std::get<double>(node.value)
@@ -42,7 +43,8 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, double* value,
   return true;
 }
 
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, int* value, std::vector<ConfigError>* errors) {
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, int* value,
+               std::vector<ConfigError>* errors) {
   if (at.node().kind != Kind::kInteger) return Expected(at, "a whole number", errors);
   double given = 0.0;
   if (!ReadValue(at, info, &given, errors)) return false;
@@ -50,7 +52,8 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, int* value, st
   return true;
 }
 
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::string* value, std::vector<ConfigError>* errors) {
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::string* value,
+               std::vector<ConfigError>* errors) {
   if (at.node().kind != Kind::kText) return Expected(at, "text in quotes", errors);
   const std::string& given = std::get<std::string>(at.node().value);
   if (given.empty()) {
@@ -73,7 +76,8 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<do
   } else {
     given.resize(at.node().children.size());
     bool good = true;
-    for (size_t i = 0; i < given.size(); ++i) good = ReadValue(at.Element(i), info, &given[i], errors) && good;
+    for (size_t i = 0; i < given.size(); ++i)
+      good = ReadValue(at.Element(i), info, &given[i], errors) && good;
     if (!good) return false;
   }
   *value = given;

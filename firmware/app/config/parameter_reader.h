@@ -13,10 +13,14 @@ namespace armada {
 
 // Reads one value: true and `*value` set, or an error at `at` that names what was given and what is allowed.
 
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, bool* value, std::vector<ConfigError>* errors);
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, int* value, std::vector<ConfigError>* errors);
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, double* value, std::vector<ConfigError>* errors);
-bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::string* value, std::vector<ConfigError>* errors);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, bool* value,
+               std::vector<ConfigError>* errors);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, int* value,
+               std::vector<ConfigError>* errors);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, double* value,
+               std::vector<ConfigError>* errors);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::string* value,
+               std::vector<ConfigError>* errors);
 /// A list of numbers; a single number is a list of one.
 bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<double>* value,
                std::vector<ConfigError>* errors);
@@ -29,7 +33,9 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, BoundedVector<
   std::vector<double> list;
   if (!ReadValue(at, info, &list, errors)) return false;
   if (list.empty() || list.size() > size_t{kMaxRows}) {
-    Report(at, "given " + std::to_string(list.size()) + " values, allowed are 1 to " + std::to_string(kMaxRows), errors);
+    Report(at,
+           "given " + std::to_string(list.size()) + " values, allowed are 1 to " + std::to_string(kMaxRows),
+           errors);
     return false;
   }
   *value = Eigen::Map<const Eigen::VectorXd>(list.data(), static_cast<Eigen::Index>(list.size()));
@@ -55,9 +61,15 @@ template <class T>
 bool IsRequired(const ParameterInfo&, const T&) {
   return false;
 }
-inline bool IsRequired(const ParameterInfo& info, double value) { return value < info.min || value > info.max; }
-inline bool IsRequired(const ParameterInfo& info, int value) { return value < info.min || value > info.max; }
-inline bool IsRequired(const ParameterInfo&, const std::string& value) { return value.empty(); }
+inline bool IsRequired(const ParameterInfo& info, double value) {
+  return value < info.min || value > info.max;
+}
+inline bool IsRequired(const ParameterInfo& info, int value) {
+  return value < info.min || value > info.max;
+}
+inline bool IsRequired(const ParameterInfo&, const std::string& value) {
+  return value.empty();
+}
 
 /// "0.0001 to 1 s": the legal range of a number.
 std::string RangeText(const ParameterInfo& info);
@@ -65,7 +77,8 @@ std::string RangeText(const ParameterInfo& info);
 /// Visitor that fills a Config struct from a table, and collects every mistake in it. Call Finish() last.
 class ParameterReader {
  public:
-  ParameterReader(const ConfigCursor& table, std::vector<ConfigError>* errors) : table_(table), errors_(errors) {}
+  ParameterReader(const ConfigCursor& table, std::vector<ConfigError>* errors)
+      : table_(table), errors_(errors) {}
 
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {

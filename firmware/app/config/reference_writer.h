@@ -12,14 +12,15 @@
 
 namespace armada {
 
-/// Visitor that documents a Config struct in markdown: a section for each table of the file. A struct that comes again
-/// is documented where it came first.
+/// Visitor that documents a Config struct in markdown: a section for each table of the file. A struct that
+/// comes again is documented where it came first.
 class ReferenceWriter {
  public:
   /// Headings of the structs documented so far.
   using Documented = std::vector<std::pair<std::type_index, std::string>>;
 
-  ReferenceWriter(std::string prefix, Documented* documented) : prefix_(std::move(prefix)), documented_(documented) {}
+  ReferenceWriter(std::string prefix, Documented* documented)
+      : prefix_(std::move(prefix)), documented_(documented) {}
 
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {
@@ -37,11 +38,13 @@ class ReferenceWriter {
   template <class Config, class Prototype>
   void List(const ListInfo& info, std::vector<Config>&, Prototype prototype) {
     Config element = prototype(0);
-    AddSection("[[" + prefix_ + info.key + "]]", std::string("\nEach: ") + info.meaning + ".\n", info.key, element);
+    AddSection("[[" + prefix_ + info.key + "]]", std::string("\nEach: ") + info.meaning + ".\n", info.key,
+               element);
   }
 
   std::string Text() const {
-    const char* head = rows_.empty() ? "" : "\n| key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n";
+    const char* head =
+        rows_.empty() ? "" : "\n| key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n";
     return head + rows_ + sections_;
   }
 
@@ -78,14 +81,17 @@ class ReferenceWriter {
     for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
     return escaped;
   }
-  static std::string Range(const ParameterInfo& info) { return ValueText(info.min) + " to " + ValueText(info.max); }
+  static std::string Range(const ParameterInfo& info) {
+    return ValueText(info.min) + " to " + ValueText(info.max);
+  }
 
   template <class Config>
   void AddSection(const std::string& heading, const std::string& meaning, const char* name, Config& config) {
     sections_ += "\n### `" + heading + "`\n" + meaning;
     for (const auto& [type, first_heading] : *documented_) {
       if (type != std::type_index(typeid(Config))) continue;
-      sections_ += "\nThe keys of `" + first_heading + "`; what is given here goes before what is given there.\n";
+      sections_ +=
+          "\nThe keys of `" + first_heading + "`; what is given here goes before what is given there.\n";
       return;
     }
     documented_->emplace_back(typeid(Config), heading);

@@ -40,7 +40,8 @@ std::optional<std::string> NearestName(std::string_view word, const std::vector<
 }
 
 std::string UnknownKeyMessage(std::string_view key, const std::vector<std::string>& allowed) {
-  if (const auto nearest = NearestName(key, allowed)) return "unknown key; did you mean \"" + *nearest + "\"?";
+  if (const auto nearest = NearestName(key, allowed))
+    return "unknown key; did you mean \"" + *nearest + "\"?";
   std::string text = "unknown key; allowed are ";
   for (size_t i = 0; i < allowed.size(); ++i) text += (i == 0 ? "" : ", ") + allowed[i];
   return text;

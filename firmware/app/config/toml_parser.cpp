@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-// toml++ 3.3 has preconditions that a file can break ("[[[x]]]"): an abort in a debug build, undefined in a release. Here
-// they are kept in both, and are an error of the file like any other.
+// toml++ 3.3 has preconditions that a file can break ("[[[x]]]"): an abort in a debug build, undefined in a
+// release. Here they are kept in both, and are an error of the file like any other.
 namespace armada {
 struct BrokenPrecondition {};
 constexpr void RequireOfToml(bool condition) {
@@ -35,7 +35,8 @@ ConfigNode Convert(const toml::node& from, const toml::source_region& place, con
       in_order.emplace_back(key.source().begin, Convert(child, key.source(), file));
       in_order.back().second.key = key.str();
     }
-    std::stable_sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(in_order.begin(), in_order.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [position, child] : in_order) node.children.push_back(std::move(child));
   } else if (const toml::array* array = from.as_array()) {
     node.kind = ConfigNode::Kind::kArray;
@@ -61,14 +62,16 @@ ConfigNode Convert(const toml::node& from, const toml::source_region& place, con
 
 }  // namespace
 
-std::optional<ConfigNode> ParseToml(std::string_view text, const std::string& file, std::vector<ConfigError>* errors) {
+std::optional<ConfigNode> ParseToml(std::string_view text, const std::string& file,
+                                    std::vector<ConfigError>* errors) {
   try {
     const toml::table table = toml::parse(text, file);
     ConfigNode root = Convert(table, table.source(), file);
     root.line = std::max(root.line, 1);
     return root;
   } catch (const toml::parse_error& error) {
-    errors->push_back({file, static_cast<int>(error.source().begin.line), "", std::string(error.description())});
+    errors->push_back(
+        {file, static_cast<int>(error.source().begin.line), "", std::string(error.description())});
   } catch (const BrokenPrecondition&) {
     errors->push_back({file, 0, "", "not TOML: a header in brackets has no name"});
   }

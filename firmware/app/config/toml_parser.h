@@ -12,8 +12,10 @@ namespace armada {
 
 inline constexpr size_t kMaxConfigBytes = 64 * 1024;
 
-/// Parses TOML text; `file` names it in places. Of syntax errors, duplicate keys among them, the first is reported.
-std::optional<ConfigNode> ParseToml(std::string_view text, const std::string& file, std::vector<ConfigError>* errors);
+/// Parses TOML text; `file` names it in places. Of syntax errors, duplicate keys among them, the first is
+/// reported.
+std::optional<ConfigNode> ParseToml(std::string_view text, const std::string& file,
+                                    std::vector<ConfigError>* errors);
 
 /// Reads and parses a file of at most kMaxConfigBytes.
 std::optional<ConfigNode> LoadToml(const std::string& path, std::vector<ConfigError>* errors);

@@ -9,8 +9,8 @@
 
 namespace armada {
 
-/// Visitor that writes a Config struct as a TOML file. The values of a table precede the tables below it, in whatever
-/// order the struct visits them.
+/// Visitor that writes a Config struct as a TOML file. The values of a table precede the tables below it, in
+/// whatever order the struct visits them.
 class TomlWriter {
  public:
   explicit TomlWriter(std::string prefix) : prefix_(std::move(prefix)) {}

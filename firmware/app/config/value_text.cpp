@@ -12,7 +12,9 @@ std::string ValueText(double value) {
   return {text.data(), end};
 }
 
-std::string RoundedText(double value) { return ValueText(std::round(value * 1e3) / 1e3); }
+std::string RoundedText(double value) {
+  return ValueText(std::round(value * 1e3) / 1e3);
+}
 
 std::string ValueText(std::string_view value) {
   constexpr std::string_view kHex = "0123456789abcdef";

@@ -10,14 +10,20 @@
 
 namespace armada {
 
-// A configuration value in TOML's notation, which for every value here is JSON's, too. Numbers are the shortest text
-// that reads back to the same value.
+// A configuration value in TOML's notation, which for every value here is JSON's, too. Numbers are the
+// shortest text that reads back to the same value.
 
 std::string ValueText(double value);
 std::string ValueText(std::string_view value);
-inline std::string ValueText(const std::string& value) { return ValueText(std::string_view(value)); }
-inline std::string ValueText(std::same_as<bool> auto value) { return value ? "true" : "false"; }
-inline std::string ValueText(std::same_as<int> auto value) { return std::to_string(value); }
+inline std::string ValueText(const std::string& value) {
+  return ValueText(std::string_view(value));
+}
+inline std::string ValueText(std::same_as<bool> auto value) {
+  return value ? "true" : "false";
+}
+inline std::string ValueText(std::same_as<int> auto value) {
+  return std::to_string(value);
+}
 
 template <NamedEnum Enum>
 std::string ValueText(Enum value) {
