@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   CheckOptions check;
   CLI::App* check_command = app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
   check_command->add_option("FILE", check.path, "fleet or scenario file")->required();
+  check_command->add_option("--set", check.sets, "key=value: any parameter of the file")->take_all();
   check_command->add_flag("--json", check.json, "print JSON");
   check_command->callback([&] { code = RunCheck(check); });
 
@@ -62,7 +63,7 @@ int main(int argc, char** argv) {
   run.scenario.AddTo(run_command);
   run_command->add_option("--bus", run.bus, "udp: the user-space CAN bus")->capture_default_str();
   run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")->capture_default_str();
-  run_command->add_option("--out", run.out, "directory for logs, traces and results")->capture_default_str();
+  run_command->add_option("--out", run.out, "directory for logs, traces and results")->take_last()->capture_default_str();
   run_command->add_option("--json", run.json, "write metrics.json here, too");
   run_command->callback([&] { code = RunRunCommand(run); });
 

@@ -50,7 +50,7 @@ class Digraph {
   bool HasSpanningTree() const;
 
  private:
-  size_t Index(int i, int j) const { return static_cast<size_t>(i * kMaxArms + j); }
+  size_t Index(int i, int j) const { return static_cast<size_t>(i) * kMaxArms + static_cast<size_t>(j); }
   void Spread(std::array<int, kMaxArms>& depth) const;
 
   int node_count_;

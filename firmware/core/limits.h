@@ -13,7 +13,7 @@ class TorqueGate {
   JointVector Update(const JointVector& wanted_Nm) {
     if (!wanted_Nm.allFinite()) shut_ = true;
     if (shut_) return JointVector::Zero(limit_Nm_.size());
-    const JointVector sent = wanted_Nm.cwiseMax(-limit_Nm_).cwiseMin(limit_Nm_);
+    JointVector sent = wanted_Nm.cwiseMax(-limit_Nm_).cwiseMin(limit_Nm_);
     if (sent != wanted_Nm) ++saturated_ticks_;
     return sent;
   }

@@ -181,7 +181,7 @@ TEST(Override, MistakesAreErrorsOfTheCommandLine) {
            {"timing.period=1", "--set: timing.period: unknown key; did you mean \"period_s\"?\n"},
            {"timming.period_s=1", "--set: timming: unknown key; did you mean \"timing\"?\n"},
            {"timing.period_s=fast", "--set: timing.period_s: given \"fast\", expected a number\n"},
-           {"timing.period_s.x=1", "--set: timing.period_s.x: \"x\" lies below a single value, 0.01\n"},
+           {"timing.period_s.x=1", "--set: timing.period_s.x: is below a single value, 0.01\n"},
            {"arm.9.base_x_m=1",
             "--set: arm.9.base_x_m: no element \"9\", allowed are * or one of: 1, 2, 3, 4, 5, 6, 7\n"},
            {"arm.6.link.2.r_m=1.2",

@@ -14,7 +14,8 @@ namespace {
 
 // One interval of the plant under constant torque.
 AppliedInterval Advance(PlanarPlant& plant, const JointVector& tau_Nm, double h_s, int steps = 1) {
-  AppliedInterval interval{FromPlant(plant, plant.q_rad), FromPlant(plant, plant.dq_rad_s), {}, {}, tau_Nm, h_s};
+  AppliedInterval interval{
+      FromPlant(plant, plant.q_rad), FromPlant(plant, plant.dq_rad_s), {}, {}, tau_Nm, h_s};
   for (int i = 0; i < steps; ++i) plant.Step(ToPlant(tau_Nm), h_s / steps);
   interval.q_end_rad = FromPlant(plant, plant.q_rad);
   interval.dq_end_rad_s = FromPlant(plant, plant.dq_rad_s);
@@ -54,7 +55,8 @@ TEST(TorqueResidual, IsTheWrongParametersTorque) {
     const TorqueResidual residual = ResidualOf(arm, theta_hat, interval);
     const JointVector ddq = (interval.dq_end_rad_s - interval.dq_start_rad_s) / interval.h_s;
     const JointVector expected =
-        arm.Regressor(residual.at, residual.dq_mid_rad_s, residual.dq_mid_rad_s, ddq) * theta_hat - interval.tau_Nm;
+        arm.Regressor(residual.at, residual.dq_mid_rad_s, residual.dq_mid_rad_s, ddq) * theta_hat -
+        interval.tau_Nm;
     EXPECT_LT((residual.z_Nm - expected).norm(), 1e-8 * (1.0 + expected.norm()));
   }
 }
@@ -117,7 +119,8 @@ TEST(ParameterFilter, CovarianceStaysSymmetricAndPositiveDefinite) {
   for (const PlanarArm& arm : random.AllKinds(1)) {
     PlanarPlant plant = RandomPlant(random, arm);
     ParameterFilter filter(AdaptationConfig{}, arm);
-    EXPECT_TRUE(filter.P().isApprox(9.0 * ParameterMatrix::Identity(arm.parameter_count(), arm.parameter_count())));
+    EXPECT_TRUE(
+        filter.P().isApprox(9.0 * ParameterMatrix::Identity(arm.parameter_count(), arm.parameter_count())));
     ParameterVector theta_hat = arm.Theta();
     for (int k = 0; k < 300; ++k) {
       const AppliedInterval interval = Advance(plant, random.Numbers(arm.dof(), 100.0), 0.01, 10);
@@ -148,9 +151,11 @@ TEST(ParameterFilter, UpdateIsTheKalmanFilters) {
       const Eigen::MatrixXd R = Eigen::MatrixXd::Identity(arm.dof(), arm.dof()) * (40.0 * 40.0 / 3.0);
       const Eigen::MatrixXd K = P * Y.transpose() * (Y * P * Y.transpose() + R).inverse();
       const Eigen::VectorXd expected = theta_hat - K * residual.z_Nm;
-      P = (Eigen::MatrixXd::Identity(count, count) - K * Y) * P + 1e-5 * Eigen::MatrixXd::Identity(count, count);
+      P = (Eigen::MatrixXd::Identity(count, count) - K * Y) * P +
+          1e-5 * Eigen::MatrixXd::Identity(count, count);
       filter.Update(arm, residual, theta_hat);
-      EXPECT_LT((theta_hat - expected).norm(), 1e-5 * (1.0 + expected.norm()));  // 40 / sqrt(3) is stated with 5 digits
+      EXPECT_LT((theta_hat - expected).norm(),
+                1e-5 * (1.0 + expected.norm()));  // 40 / sqrt(3) is stated with 5 digits
       EXPECT_LT((filter.P() - P).norm(), 1e-4);
     }
   }

@@ -16,7 +16,7 @@ void ExpectNoAllocation(const ArmControllerConfig& config, RandomArms& random) {
   in.neighbours.count = 3;
   JointVector q = random.Numbers(arm.dof(), 1.0);
   for (int k = 0; k < 20; ++k) {
-    if (k == 10) q.setZero();  // stretched: singular
+    if (k == 10) q.setZero();                 // stretched: singular
     in.tick_s = 0.01 * (k < 15 ? k : k + 3);  // missed ticks
     in.sample_s = in.tick_s + 0.001;
     in.q_rad = q;
@@ -39,8 +39,10 @@ TEST(ArmControllerMemory, StepAllocatesNothing) {
       ArmControllerConfig config = PaperController(random.Config(dof, gravity_m_s2));
       config.control.adaptation.kind = AdaptationKind::kBoth;
       for (const LawKind law : {LawKind::kPaper, LawKind::kRobust}) {
-        for (const EstimatorKind kind : {EstimatorKind::kPaper, EstimatorKind::kImplicit, EstimatorKind::kPredictive}) {
-          for (const SubtaskKind subtask : {SubtaskKind::kNone, SubtaskKind::kPosture, SubtaskKind::kManipulability}) {
+        for (const EstimatorKind kind :
+             {EstimatorKind::kPaper, EstimatorKind::kImplicit, EstimatorKind::kPredictive}) {
+          for (const SubtaskKind subtask :
+               {SubtaskKind::kNone, SubtaskKind::kPosture, SubtaskKind::kManipulability}) {
             config.control.law = law;
             config.control.subtask.kind = subtask;
             config.estimator.kind = kind;

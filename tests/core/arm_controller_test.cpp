@@ -82,7 +82,8 @@ TEST(ArmController, NonFiniteInputEndsInFaultWithZeroTorque) {
         ArmController controller = loop.controller();
         const JointVector tau_Nm = controller.Step(bad);
         ASSERT_TRUE(tau_Nm.allFinite());
-        if (bad.q_rad.allFinite() && bad.dq_rad_s.allFinite()) continue;  // absurd but a number: limited is enough
+        if (bad.q_rad.allFinite() && bad.dq_rad_s.allFinite())
+          continue;  // absurd but a number: limited is enough
         EXPECT_TRUE(tau_Nm.isZero(0.0));
         EXPECT_EQ(controller.status().state, ControllerState::kFault);
         ArmInput good = loop.Sample();

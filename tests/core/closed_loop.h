@@ -8,11 +8,12 @@
 
 namespace armada {
 
-/// One arm under its controller, pinned to a leader, without buses: sampled on the tick, its torque in force `latency_s`
-/// later, the plant integrated at 1 ms.
+/// One arm under its controller, pinned to a leader, without buses: sampled on the tick, its torque in force
+/// `latency_s` later, the plant integrated at 1 ms.
 class ClosedLoop {
  public:
-  ClosedLoop(const ArmControllerConfig& config, const ArmInitialState& initial, std::function<Zeta(double)> leader)
+  ClosedLoop(const ArmControllerConfig& config, const ArmInitialState& initial,
+             std::function<Zeta(double)> leader)
       : period_s_(config.timing.period_s),
         latency_s_(config.timing.sample_to_torque_s),
         controller_(config, initial),

@@ -7,7 +7,8 @@
 
 namespace armada {
 
-/// Estimators (1.9) of a fleet in lock step: at every tick each hears the state that the others have at that tick.
+/// Estimators (1.9) of a fleet in lock step: at every tick each hears the state that the others have at that
+/// tick.
 class EstimatorNetwork {
  public:
   EstimatorNetwork(const EstimatorConfig& config, const Digraph& graph, const std::vector<Zeta>& initial)
@@ -24,7 +25,8 @@ class EstimatorNetwork {
     for (int i = 0; i < graph_.node_count(); ++i) {
       Neighbours heard;
       const auto add = [&](double weight, const Zeta& zeta, int agreement) {
-        if (weight > 0.0) heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true};
+        if (weight > 0.0)
+          heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true};
       };
       add(graph_.pin(i), leader, Estimator::kMaxAgreement);
       for (int j = 0; j < graph_.node_count(); ++j) {

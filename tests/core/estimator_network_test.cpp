@@ -10,7 +10,8 @@
 namespace armada {
 namespace {
 
-constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit, EstimatorKind::kPredictive};
+constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit,
+                                       EstimatorKind::kPredictive};
 
 EstimatorConfig Config(EstimatorKind kind) {
   EstimatorConfig config;
@@ -87,10 +88,12 @@ double LargestError(const EstimatorNetwork& network, TaskVector Zeta::*block, co
 }
 
 // Theorem 1 with t_0 = 0, from the states at the start.
-double TheoremTime(double start_error, double beta, double supremum) { return start_error / (beta - supremum); }
+double TheoremTime(double start_error, double beta, double supremum) {
+  return start_error / (beta - supremum);
+}
 
-// Errors are small multiples of h beta: two hops down the tree, each at most two steps off. The theorem speaks of (1.9);
-// that prediction keeps to the same times from these starts is measured, not proved.
+// Errors are small multiples of h beta: two hops down the tree, each at most two steps off. The theorem
+// speaks of (1.9); that prediction keeps to the same times from these starts is measured, not proved.
 TEST(EstimatorNetwork, NoComponentLeavesItsBandAfterTheTheoremsTime) {
   constexpr double kH_s = 1e-4;
   constexpr double kPassingDown_s = 5.0 * kH_s;
@@ -99,9 +102,10 @@ TEST(EstimatorNetwork, NoComponentLeavesItsBandAfterTheTheoremsTime) {
       const EstimatorConfig config = Config(kind);
       EstimatorNetwork network(config, PaperGraph(), RandomStart(seed, 7));
       const Zeta start = PaperLeader(0.0);
-      const double t_f1 = TheoremTime(LargestError(network, &Zeta::x_m, start), config.beta_1_m_s, kLeaderSpeed_m_s);
-      const double t_f2 =
-          TheoremTime(LargestError(network, &Zeta::v_m_s, start), config.beta_2_m_s2, kLeaderAcceleration_m_s2);
+      const double t_f1 =
+          TheoremTime(LargestError(network, &Zeta::x_m, start), config.beta_1_m_s, kLeaderSpeed_m_s);
+      const double t_f2 = TheoremTime(LargestError(network, &Zeta::v_m_s, start), config.beta_2_m_s2,
+                                      kLeaderAcceleration_m_s2);
       const double t_f3 =
           TheoremTime(LargestError(network, &Zeta::a_m_s2, start), config.beta_3_m_s3, kLeaderJerk_m_s3);
       const double t_f = std::max({t_f1, t_f2, t_f3});
@@ -199,7 +203,8 @@ TEST(EstimatorNetwork, LeaderlessPaperKindAgreesUpToItsChatter) {
   EstimatorNetwork network(config, Ring(7, true), RandomStart(6, 7));
   for (int k = 0; k < 3000; ++k) network.Tick(Zeta::Zero(2), 0.01);
   for (const Estimator& node : network.nodes()) {
-    EXPECT_LT((node.zeta().x_m - network.nodes()[0].zeta().x_m).cwiseAbs().maxCoeff(), 8.0 * 0.01 * config.beta_1_m_s);
+    EXPECT_LT((node.zeta().x_m - network.nodes()[0].zeta().x_m).cwiseAbs().maxCoeff(),
+              8.0 * 0.01 * config.beta_1_m_s);
   }
 }
 

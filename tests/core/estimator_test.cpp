@@ -9,7 +9,8 @@ namespace armada {
 namespace {
 
 constexpr double kH_s = 0.01;
-constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit, EstimatorKind::kPredictive};
+constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit,
+                                       EstimatorKind::kPredictive};
 
 EstimatorConfig Config(EstimatorKind kind) {
   EstimatorConfig config;
@@ -30,13 +31,18 @@ Zeta ZetaOf(double x_m) {
 
 Neighbours Hearing(std::initializer_list<Neighbour> list) {
   Neighbours neighbours;
-  for (const Neighbour& neighbour : list) neighbours.list[static_cast<size_t>(neighbours.count++)] = neighbour;
+  for (const Neighbour& neighbour : list)
+    neighbours.list[static_cast<size_t>(neighbours.count++)] = neighbour;
   return neighbours;
 }
 
-Neighbour Leader(const Zeta& zeta) { return {1.0, zeta, 0.0, Estimator::kMaxAgreement, true}; }
+Neighbour Leader(const Zeta& zeta) {
+  return {1.0, zeta, 0.0, Estimator::kMaxAgreement, true};
+}
 
-double Sgn(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
+double Sgn(double value) {
+  return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
+}
 
 void ExpectEqual(const Zeta& a, const Zeta& b, double tolerance) {
   EXPECT_LE((a.x_m - b.x_m).cwiseAbs().maxCoeff(), tolerance);

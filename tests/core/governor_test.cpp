@@ -32,7 +32,8 @@ TEST(Governor, SlewsTowardsADistantTargetAndReachesIt) {
   const JointVector target{{2.0, -1.0}};
   for (int k = 1; k <= 6; ++k) {
     EXPECT_FALSE(governor.Update(target, kH_s));
-    EXPECT_LT((governor.end_rad_s() - k * 0.15 * target).norm(), 1e-12);  // 30 rad/s^2 on the largest, same direction
+    EXPECT_LT((governor.end_rad_s() - k * 0.15 * target).norm(),
+              1e-12);  // 30 rad/s^2 on the largest, same direction
   }
   EXPECT_TRUE(governor.Update(target, kH_s));
   EXPECT_EQ(governor.end_rad_s(), target);

@@ -16,8 +16,8 @@ Digraph Chain(int count, bool closed) {
 }
 
 TEST(Digraph, HasThePapersLaplacianAsPrinted) {
-  constexpr int kPrinted[7][7] = {{0, 0, 0, 0, 0, 0, 0},  {-1, 2, -1, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0},
-                                  {-1, 0, -1, 2, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0},  {0, 0, 0, 0, -1, 1, 0},
+  constexpr int kPrinted[7][7] = {{0, 0, 0, 0, 0, 0, 0},   {-1, 2, -1, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0},
+                                  {-1, 0, -1, 2, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0},   {0, 0, 0, 0, -1, 1, 0},
                                   {0, 0, 0, 0, 0, 0, 0}};
   const Digraph graph = PaperGraph();
   for (int i = 0; i < 7; ++i) {

@@ -91,7 +91,8 @@ TEST(MinimizeWithL1, TendsToTheExplicitSgnForShortPeriods) {
   const JointVector K_r = JointVector::Constant(3, 60.0);
   const JointVector explicit_rate = H.inverse() * (-K * s - K_r.cwiseProduct(s.cwiseSign()));
   const auto error = [&](double h_s) {
-    const JointVector next = MinimizeWithL1({.sweeps = 1000, .tolerance_rad_s = 0.0}, H + h_s * K, H * s, h_s * K_r);
+    const JointVector next =
+        MinimizeWithL1({.sweeps = 1000, .tolerance_rad_s = 0.0}, H + h_s * K, H * s, h_s * K_r);
     return ((next - s) / h_s - explicit_rate).norm();
   };
   EXPECT_LT(error(1e-6), 1e-4 * explicit_rate.norm());

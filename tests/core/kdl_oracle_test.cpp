@@ -1,4 +1,5 @@
-// Orocos KDL (Debian: liborocos-kdl-dev), spatial rigid-body algorithms by other authors, judges the planar model.
+// Orocos KDL (Debian: liborocos-kdl-dev), spatial rigid-body algorithms by other authors, judges the planar
+// model.
 #include <gtest/gtest.h>
 
 #include <kdl/chaindynparam.hpp>
@@ -12,7 +13,8 @@
 namespace armada {
 namespace {
 
-// The arm as KDL sees it: a fixed segment for the base, then one segment a link, its frame at the link's far end.
+// The arm as KDL sees it: a fixed segment for the base, then one segment a link, its frame at the link's far
+// end.
 KDL::Chain ChainOf(const PlanarArmConfig& config) {
   KDL::Chain chain;
   const KDL::Vector base(config.base_x_m, config.base_y_m, 0.0);
@@ -22,7 +24,8 @@ KDL::Chain ChainOf(const PlanarArmConfig& config) {
     const LinkConfig& link = config.links[static_cast<size_t>(i)];
     const KDL::RigidBodyInertia inertia(link.m_kg, KDL::Vector(link.r_m - link.l_m, 0.0, 0.0),
                                         KDL::RotationalInertia(0.0, 0.0, link.I_kgm2));
-    chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ), KDL::Frame(KDL::Vector(link.l_m, 0.0, 0.0)), inertia));
+    chain.addSegment(
+        KDL::Segment(KDL::Joint(KDL::Joint::RotZ), KDL::Frame(KDL::Vector(link.l_m, 0.0, 0.0)), inertia));
   }
   return chain;
 }
@@ -77,7 +80,8 @@ TEST_F(KdlOracle, AgreesOnPositionAndJacobian) {
 TEST_F(KdlOracle, AgreesOnTheJacobiansRate) {
   ForRandomCases(2, [](const Case& c, RandomArms&) {
     KDL::Jacobian dJ(static_cast<unsigned>(c.arm.dof()));
-    ASSERT_EQ(KDL::ChainJntToJacDotSolver(c.chain).JntToJacDot(KDL::JntArrayVel(ToKdl(c.q), ToKdl(c.dq)), dJ), 0);
+    ASSERT_EQ(KDL::ChainJntToJacDotSolver(c.chain).JntToJacDot(KDL::JntArrayVel(ToKdl(c.q), ToKdl(c.dq)), dJ),
+              0);
     EXPECT_LT((dJ.data.topRows(2) - c.arm.JacobianRate(c.at, c.dq)).cwiseAbs().maxCoeff(), 1e-11);
   });
 }
@@ -93,7 +97,8 @@ TEST_F(KdlOracle, AgreesOnInertiaCoriolisAndGravity) {
     ASSERT_EQ(dynamics.JntToGravity(ToKdl(c.q), g), 0);
     EXPECT_LT((H.data - c.arm.Inertia(c.at, c.theta)).cwiseAbs().maxCoeff(), 1e-10);
     EXPECT_LT((C_dq.data - c.arm.Coriolis(c.at, c.dq, c.theta) * c.dq).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_LT((g.data - c.arm.Bias(c.at, JointVector::Zero(c.arm.dof()), c.theta)).cwiseAbs().maxCoeff(), 1e-10);
+    EXPECT_LT((g.data - c.arm.Bias(c.at, JointVector::Zero(c.arm.dof()), c.theta)).cwiseAbs().maxCoeff(),
+              1e-10);
   });
 }
 

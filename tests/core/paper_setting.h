@@ -43,7 +43,8 @@ inline constexpr double kLeaderSpeed_m_s = 0.5 * std::numbers::pi;
 inline constexpr double kLeaderAcceleration_m_s2 = kLeaderSpeed_m_s * std::numbers::pi;
 inline constexpr double kLeaderJerk_m_s3 = kLeaderAcceleration_m_s2 * std::numbers::pi;
 
-/// Fig. 2: nodes 1, 3, 5, 7 see the leader; 2 and 4 listen to 1 and 3, 6 to 5. Node i of the paper is i - 1 here.
+/// Fig. 2: nodes 1, 3, 5, 7 see the leader; 2 and 4 listen to 1 and 3, 6 to 5. Node i of the paper is i - 1
+/// here.
 inline Digraph PaperGraph() {
   Digraph graph(7);
   for (const int pinned : {0, 2, 4, 6}) graph.SetPin(pinned, 1.0);

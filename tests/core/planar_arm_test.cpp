@@ -50,14 +50,16 @@ TEST(PlanarArm, InertiaRateMinusTwiceCoriolisIsSkew) {  // (P1)
     const JointVector q = random.Numbers(arm.dof(), 5.0);
     const JointVector dq = random.Numbers(arm.dof(), 5.0);
     const ParameterVector theta = RandomTheta(arm, random);
-    const JointMatrix dH = (arm.Inertia(arm.At(q + kStep * dq), theta) - arm.Inertia(arm.At(q - kStep * dq), theta)) /
-                           (2.0 * kStep);
+    const JointMatrix dH =
+        (arm.Inertia(arm.At(q + kStep * dq), theta) - arm.Inertia(arm.At(q - kStep * dq), theta)) /
+        (2.0 * kStep);
     const JointMatrix N = dH - 2.0 * arm.Coriolis(arm.At(q), dq, theta);
     EXPECT_LT((N + N.transpose()).cwiseAbs().maxCoeff(), 1e-6 * (1.0 + N.cwiseAbs().maxCoeff()));
   }
 }
 
-// The same without differences: dH/dt = C + C' by the chain rule, D_ab sin(th_a - th_b) (W_b - W_a) in link angles.
+// The same without differences: dH/dt = C + C' by the chain rule, D_ab sin(th_a - th_b) (W_b - W_a) in link
+// angles.
 TEST(PlanarArm, CoriolisPlusTransposeIsTheInertiaRate) {  // (P1)
   RandomArms random(3);
   for (const PlanarArm& arm : random.AllKinds(10)) {
@@ -202,7 +204,9 @@ TEST(PlanarArm, TurningTheBaseIsTurningTheFirstJoint) {
   const JointVector q_turned = q - orientation * JointVector::Unit(3, 0);
   EXPECT_LT((straight.Position(straight.At(q)) - turned.Position(turned.At(q_turned))).norm(), 1e-12);
   EXPECT_LT((Gravity(straight, straight.At(q), straight.Theta()) -
-             Gravity(turned, turned.At(q_turned), turned.Theta())).norm(), 1e-10);
+             Gravity(turned, turned.At(q_turned), turned.Theta()))
+                .norm(),
+            1e-10);
 }
 
 TEST(PlanarArm, StaysInsideItsReachableRing) {
@@ -248,7 +252,8 @@ TEST(PlanarArm, ThetaOfTheThreeLinkArmsIsTheTextbooks) {
     const auto& [one, two, three, l4, l5, l6, l7] = config.links;
     const ParameterVector theta = PlanarArm(config).Theta();
     ASSERT_EQ(theta.size(), 9);
-    EXPECT_DOUBLE_EQ(theta[0], one.I_kgm2 + one.m_kg * one.r_m * one.r_m + (two.m_kg + three.m_kg) * one.l_m * one.l_m);
+    EXPECT_DOUBLE_EQ(theta[0],
+                     one.I_kgm2 + one.m_kg * one.r_m * one.r_m + (two.m_kg + three.m_kg) * one.l_m * one.l_m);
     EXPECT_DOUBLE_EQ(theta[1], (two.m_kg * two.r_m + three.m_kg * two.l_m) * one.l_m);
     EXPECT_DOUBLE_EQ(theta[2], three.m_kg * three.r_m * one.l_m);
     EXPECT_DOUBLE_EQ(theta[3], two.I_kgm2 + two.m_kg * two.r_m * two.r_m + three.m_kg * two.l_m * two.l_m);

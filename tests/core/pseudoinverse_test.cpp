@@ -37,7 +37,8 @@ class EveryShape : public testing::TestWithParam<Shape> {
   RandomArms random_{1};
 };
 INSTANTIATE_TEST_SUITE_P(Pseudoinverse, EveryShape,
-                         testing::Values(Shape{2, 2}, Shape{2, 3}, Shape{2, 7}, Shape{3, 3}, Shape{3, 4}, Shape{3, 7}));
+                         testing::Values(Shape{2, 2}, Shape{2, 3}, Shape{2, 7}, Shape{3, 3}, Shape{3, 4},
+                                         Shape{3, 7}));
 
 TEST_P(EveryShape, UndampedSatisfiesLemma1) {
   for (int trial = 0; trial < 200; ++trial) {
@@ -67,7 +68,8 @@ TEST_P(EveryShape, ReportsSmallestSingularValueAndManipulability) {
     const Pseudoinverse result = DampedPseudoinverse(kDamped, J);
     const Eigen::VectorXd sigma = Eigen::MatrixXd(J).jacobiSvd().singularValues();
     EXPECT_NEAR(result.sigma_min, sigma.minCoeff(), 1e-10);
-    EXPECT_NEAR(result.determinant_JJt, sigma.prod() * sigma.prod(), 1e-10 * (1.0 + sigma.prod() * sigma.prod()));
+    EXPECT_NEAR(result.determinant_JJt, sigma.prod() * sigma.prod(),
+                1e-10 * (1.0 + sigma.prod() * sigma.prod()));
   }
 }
 
@@ -88,12 +90,14 @@ TEST(Pseudoinverse, DampingLeavesRegularJacobiansAlone) {
   EXPECT_EQ(DampedPseudoinverse(kDamped, J).J_sharp, DampedPseudoinverse(kUndamped, J).J_sharp);
 }
 
-// sigma / (sigma^2 + l^2(sigma)) has its maximum inside the damped range; it bounds |J#| however small sigma is.
+// sigma / (sigma^2 + l^2(sigma)) has its maximum inside the damped range; it bounds |J#| however small sigma
+// is.
 TEST(Pseudoinverse, DampedStaysBoundedUpToAndAtTheSingularity) {
   double bound = 0.0;
   for (double s = 1e-4; s < 0.3; s += 1e-4) {
     const double ratio = std::min(1.0, s / kDamped.sigma_threshold_m);
-    bound = std::max(bound, s / (s * s + kDamped.damping_max_m * kDamped.damping_max_m * (1.0 - ratio * ratio)));
+    bound =
+        std::max(bound, s / (s * s + kDamped.damping_max_m * kDamped.damping_max_m * (1.0 - ratio * ratio)));
   }
   RandomArms random(4);
   for (const double sigma : {0.15, 0.1, 0.05, 1e-2, 1e-4, 1e-8, 1e-12, 0.0}) {
@@ -110,11 +114,13 @@ TEST(Pseudoinverse, HasTheDocumentedGainInEachDirection) {
   for (const double sigma : {0.14, 0.1, 0.03}) {
     const JacobianMatrix J = WithSingularValues(random, 4, Eigen::Vector3d(sigma, 0.5, 2.0));
     const auto svd = Eigen::MatrixXd(J).jacobiSvd(Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::MatrixXd gains = svd.matrixV().transpose() * DampedPseudoinverse(kDamped, J).J_sharp * svd.matrixU();
+    const Eigen::MatrixXd gains =
+        svd.matrixV().transpose() * DampedPseudoinverse(kDamped, J).J_sharp * svd.matrixU();
     const double ratio = sigma / kDamped.sigma_threshold_m;
     const double l_squared = kDamped.damping_max_m * kDamped.damping_max_m * (1.0 - ratio * ratio);
     const Eigen::Vector3d expected(1.0 / 2.0, 1.0 / 0.5, sigma / (sigma * sigma + l_squared));
-    EXPECT_LT((gains - Eigen::MatrixXd(expected.asDiagonal())).norm(), 1e-9);  // strong directions are undamped
+    EXPECT_LT((gains - Eigen::MatrixXd(expected.asDiagonal())).norm(),
+              1e-9);  // strong directions are undamped
   }
 }
 

@@ -35,8 +35,9 @@ DisturbanceConfig Config(DisturbanceKind kind) {
 TEST(Disturbance, EveryKindIsBoundedByItsAmplitude) {
   const LeaderPath leader = SomeLeader();
   const PlanarPlant plant = SomePlant();
-  for (const DisturbanceKind kind : {DisturbanceKind::kNone, DisturbanceKind::kUniform, DisturbanceKind::kConstant,
-                                     DisturbanceKind::kSine, DisturbanceKind::kAdversarial}) {
+  for (const DisturbanceKind kind :
+       {DisturbanceKind::kNone, DisturbanceKind::kUniform, DisturbanceKind::kConstant, DisturbanceKind::kSine,
+        DisturbanceKind::kAdversarial}) {
     const Disturbance disturbance(Config(kind), 7, 3);
     double largest = 0.0;
     for (int k = 0; k < 20000; ++k) {
@@ -95,7 +96,8 @@ TEST(Disturbance, DependsOnSeedArmJointAndTimeAlone) {
     return Disturbance(Config(DisturbanceKind::kUniform), seed, arm).At(t_s, plant, nullptr);
   };
   EXPECT_EQ(value(7, 3, 0.5), value(7, 3, 0.5));
-  EXPECT_EQ(value(7, 3, 0.5), Disturbance(Config(DisturbanceKind::kUniform), 7, 3).At(0.5, SomePlant(9), nullptr));
+  EXPECT_EQ(value(7, 3, 0.5),
+            Disturbance(Config(DisturbanceKind::kUniform), 7, 3).At(0.5, SomePlant(9), nullptr));
   EXPECT_NE(value(7, 3, 0.5), value(8, 3, 0.5));
   EXPECT_NE(value(7, 3, 0.5), value(7, 4, 0.5));
   EXPECT_NE(value(7, 3, 0.5), value(7, 3, 0.52));
@@ -118,7 +120,8 @@ TEST(Disturbance, ConstantAndSineAreWhatTheySay) {
   EXPECT_EQ(sine.NextChange(1.0), kInfinity);
 }
 
-// d enters (1.1) on the left, so -d is a torque on the arm. Moved by it from rest the end effector must go away.
+// d enters (1.1) on the left, so -d is a torque on the arm. Moved by it from rest the end effector must go
+// away.
 TEST(Disturbance, AdversarialPushesTheEndEffectorAwayFromTheLeader) {
   const LeaderPath leader = SomeLeader();
   const Disturbance disturbance(Config(DisturbanceKind::kAdversarial), 1, 1);

@@ -28,7 +28,8 @@ ScenarioConfig Scenario(int dof = 1) {
 
 class Bench {
  public:
-  explicit Bench(const ScenarioConfig& scenario, const ArmStart& start = {}, double start_s = -0.5, uint64_t seed = 1)
+  explicit Bench(const ScenarioConfig& scenario, const ArmStart& start = {}, double start_s = -0.5,
+                 uint64_t seed = 1)
       : dof_(scenario.fleet.arms[0].arm.dof), arm_(scenario, 0, seed, start, nullptr, start_s) {}
 
   EmulatedArm& arm() { return arm_; }
@@ -44,7 +45,8 @@ class Bench {
     out_.Clear();
   }
   void Enable(double t_s, int node) {
-    Send(t_s, odrive::EncodeSetControllerMode(node, {odrive::ControlMode::kTorque, odrive::InputMode::kPassthrough}));
+    Send(t_s, odrive::EncodeSetControllerMode(
+                  node, {odrive::ControlMode::kTorque, odrive::InputMode::kPassthrough}));
     Send(t_s, odrive::EncodeSetAxisState(node, odrive::AxisState::kClosedLoop));
   }
   void EnableAll(double t_s) {
@@ -207,7 +209,8 @@ TEST(EmulatedArm, SilenceDisarmsTheDriveAtItsWatchdogsTime) {
   EXPECT_NEAR(bench.arm().plant().dq_rad_s[0], 4.0 * 0.03, 1e-8);
 }
 
-// Times that are not multiples of anything, ends of holds, drives' events and tiny steps: time must always move on.
+// Times that are not multiples of anything, ends of holds, drives' events and tiny steps: time must always
+// move on.
 TEST(EmulatedArm, TimeMovesOnThroughAwkwardInstants) {
   for (const double start_s : {-0.5, -0.3000000001, -1.0 / 3.0}) {
     for (const double hold_s : {0.01, 1e-4, 0.0007, 1.0 / 3.0}) {
@@ -226,7 +229,8 @@ TEST(EmulatedArm, TimeMovesOnThroughAwkwardInstants) {
         EXPECT_NEAR(bench.arm().time_s(), t_s, 1e-12);
       }
       const double hold_end_s = std::ceil(t_s / hold_s + 1.0) * hold_s;
-      for (const double edge_s : {std::nextafter(hold_end_s, 0.0), hold_end_s, std::nextafter(hold_end_s, 10.0)}) {
+      for (const double edge_s :
+           {std::nextafter(hold_end_s, 0.0), hold_end_s, std::nextafter(hold_end_s, 10.0)}) {
         bench.AdvanceTo(edge_s);
         EXPECT_NEAR(bench.arm().time_s(), edge_s, 1e-12);
       }

@@ -27,9 +27,9 @@ TEST(PlanarPlant, AccelerationIsThatOfTheEquationsOfMotion) {
     const JointVector tau_Nm = random.Numbers(arm.dof(), 50.0);
     const PlanarArm::Posture at = arm.At(q);
     const ParameterVector theta = arm.Theta();
-    const JointVector expected =
-        arm.Inertia(at, theta).ldlt().solve(tau_Nm - arm.Bias(at, dq, theta));
-    const JointVector actual = FromPlant(plant, plant.Acceleration(plant.q_rad, plant.dq_rad_s, ToPlant(tau_Nm)));
+    const JointVector expected = arm.Inertia(at, theta).ldlt().solve(tau_Nm - arm.Bias(at, dq, theta));
+    const JointVector actual =
+        FromPlant(plant, plant.Acceleration(plant.q_rad, plant.dq_rad_s, ToPlant(tau_Nm)));
     EXPECT_LT((actual - expected).norm(), 1e-9 * (1.0 + expected.norm())) << arm.dof() << " joints";
   }
 }

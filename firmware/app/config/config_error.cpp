@@ -7,7 +7,7 @@ namespace armada {
 
 std::string ToString(const ConfigError& error) {
   std::string text = error.file;
-  if (error.line > 0) text += ":" + std::to_string(error.line);
+  if (error.line > 0) text.append(":").append(std::to_string(error.line));
   text += ": ";
   if (!error.key.empty()) text += error.key + ": ";
   return text + error.message;

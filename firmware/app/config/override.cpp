@@ -58,7 +58,7 @@ class Application {
       case ConfigNode::Kind::kArray:
         return IntoArray(node, label, rest);
       default:
-        return Fail("\"" + std::string(label) + "\" lies below a single value, " + node->Describe());
+        return Fail("is below a single value, " + node->Describe());
     }
   }
 

@@ -1,0 +1,164 @@
+// One board against its emulated bench and hand-made messages: what it does when the world does not behave.
+
+#include "firmware/app/arm_node.h"
+
+#include <gtest/gtest.h>
+
+#include "firmware/link/channels.h"
+#include "hil/emulated_arm.h"
+#include "hil/scenario_file.h"
+#include "tests/support/limit_malloc.h"
+
+namespace armada {
+namespace {
+
+constexpr int64_t kEpochNs = 1'000'000'000;
+constexpr int64_t kPeriodNs = 10'000'000;
+
+ScenarioConfig PaperScenario() {
+  std::vector<ConfigError> errors;
+  auto scenario = LoadScenario(ARMADA_SOURCE_DIR "/hil/scenarios/paper.toml", {}, &errors);
+  EXPECT_TRUE(errors.empty());
+  return *scenario;
+}
+
+/// Arm 1 of the paper (pinned, two joints), brought up and ready for its first tick.
+class Board : public testing::Test {
+ protected:
+  Board()
+      : scenario_(PaperScenario()),
+        leader_(scenario_.leader),
+        start_(DrawStart(scenario_, 0, 1, &leader_)),
+        node_(scenario_.fleet, 0, start_.controller, kEpochNs),
+        bench_(scenario_, 0, 1, start_, &leader_, -0.5) {
+    for (int64_t k = -50; k < 0; ++k) {
+      ready_ = node_.BringUp(&to_drives_);
+      Carry(k);
+      Advance(k + 1);
+    }
+  }
+
+  double TimeOf(int64_t k) const { return 0.01 * static_cast<double>(k); }
+  int64_t NanosecondsOf(int64_t k) const { return kEpochNs + k * kPeriodNs; }
+
+  void Carry(int64_t k) {
+    for (const CanFrame& frame : to_drives_) bench_.OnFrame(TimeOf(k), frame, &to_board_);
+    to_drives_.Clear();
+    HandOver(k);
+  }
+  void HandOver(int64_t k) {
+    for (CanFrame frame : to_board_) {
+      frame.stamp_ns = NanosecondsOf(k);
+      if (deaf_to_ == 0 || (frame.id >> 5) != deaf_to_) node_.OnFrame(frame);
+    }
+    to_board_.Clear();
+  }
+  void Advance(int64_t k) {
+    bench_.AdvanceTo(TimeOf(k), &to_board_);
+    HandOver(k);
+  }
+  void SendLeader(int64_t k) {
+    const Zeta zeta = leader_.At(TimeOf(k));
+    leader_t message{};
+    message.stamp_ns = NanosecondsOf(k);
+    message.sequence = k + 1;
+    message.task_dim = 2;
+    for (int c = 0; c < 2; ++c) {
+      message.x_m[c] = zeta.x_m[c];
+      message.v_m_s[c] = zeta.v_m_s[c];
+      message.a_m_s2[c] = zeta.a_m_s2[c];
+    }
+    node_.OnMessage({kLeaderChannel, Encode(message, &buffer_), NanosecondsOf(k)});
+  }
+  void Tick(int64_t k) {
+    node_.RequestSamples(NanosecondsOf(k), &to_drives_);
+    Carry(k);
+    SendLeader(k);
+    node_.Step(NanosecondsOf(k), &to_drives_);
+    Carry(k);
+    Advance(k + 1);
+  }
+
+  ScenarioConfig scenario_;
+  LeaderPath leader_;
+  ArmStart start_;
+  ArmNode node_;
+  EmulatedArm bench_;
+  FrameList to_drives_, to_board_;
+  MessageBuffer buffer_{};
+  bool ready_ = false;
+  uint32_t deaf_to_ = 0;  ///< node whose frames are lost on the way to the board
+};
+
+TEST_F(Board, IsReadyAfterTheBringUpAndThenRuns) {
+  EXPECT_TRUE(ready_);
+  for (int64_t k = 0; k < 5; ++k) Tick(k);
+  EXPECT_EQ(node_.state(), ControllerState::kRun);
+  EXPECT_TRUE(bench_.released());
+}
+
+TEST_F(Board, PredictsOverASingleMissingSample) {
+  for (int64_t k = 0; k < 5; ++k) Tick(k);
+  deaf_to_ = 1;
+  Tick(5);
+  EXPECT_FALSE(node_.SamplesComplete());
+  deaf_to_ = 0;
+  Tick(6);
+  EXPECT_EQ(node_.state(), ControllerState::kRun);
+}
+
+TEST_F(Board, StopsForGoodWhenAJointStaysSilent) {
+  for (int64_t k = 0; k < 5; ++k) Tick(k);
+  deaf_to_ = 2;
+  for (int64_t k = 5; k < 9; ++k) Tick(k);
+  EXPECT_EQ(node_.state(), ControllerState::kFault);
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+  deaf_to_ = 0;
+  for (int64_t k = 9; k < 40; ++k) Tick(k);
+  EXPECT_EQ(node_.state(), ControllerState::kFault) << "nothing re-arms by itself";
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
+TEST_F(Board, WithoutDrivesInTorqueModeSendsNoTorque) {
+  ArmNode fresh(scenario_.fleet, 0, start_.controller, kEpochNs);
+  FrameList out;
+  fresh.RequestSamples(kEpochNs, &out);
+  fresh.Step(kEpochNs, &out);
+  EXPECT_EQ(fresh.state(), ControllerState::kFault);
+}
+
+TEST_F(Board, DropsAndCountsWhatIsNoMessage) {
+  Tick(0);
+  const std::array<uint8_t, 5> junk{1, 2, 3, 4, 5};
+  node_.OnMessage({kLeaderChannel, junk, kEpochNs});
+  EXPECT_EQ(node_.rejected_messages(), 1);
+  SendLeader(0);  // the same message again
+  EXPECT_EQ(node_.rejected_messages(), 2);
+  node_.OnMessage({"EST_5", junk, kEpochNs});  // arm 1 does not listen to arm 5
+  EXPECT_EQ(node_.rejected_messages(), 2);
+}
+
+TEST_F(Board, PublishesTheEstimateThatIsValidAtTheTick) {
+  for (int64_t k = 0; k < 3; ++k) Tick(k);
+  estimate_t estimate;
+  ASSERT_TRUE(Decode(node_.EncodeEstimate(NanosecondsOf(3), &buffer_), &estimate));
+  EXPECT_EQ(estimate.arm_id, 1);
+  EXPECT_EQ(estimate.stamp_ns, NanosecondsOf(3));
+  EXPECT_EQ(estimate.sequence, 1);
+  EXPECT_EQ(estimate.x_m[0], node_.controller().zeta().x_m[0]);
+}
+
+TEST_F(Board, ATickAllocatesNothing) {
+  for (int64_t k = 0; k < 3; ++k) Tick(k);
+  telemetry_t telemetry{};
+  const LimitMalloc guard;
+  for (int64_t k = 3; k < 200; ++k) {
+    node_.EncodeEstimate(NanosecondsOf(k), &buffer_);
+    Tick(k);
+    node_.FillTelemetry(&telemetry);
+    Encode(telemetry, &buffer_);
+  }
+}
+
+}  // namespace
+}  // namespace armada

@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# The programs as a user starts them: exit codes, messages, a run of processes that leaves nothing behind.
+# usage: command_line_test.sh BIN_DIR SOURCE_DIR
+set -u
+bin=$1
+source=$2
+armada=$bin/armada
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# expect CODE PATTERN COMMAND...: the exit code, and a line of its output.
+expect() {
+  local code=$1 pattern=$2
+  shift 2
+  "$@" >"$work/out" 2>&1
+  local got=$?
+  [ "$got" = "$code" ] || fail "exit code $got, not $code: $*: $(cat "$work/out")"
+  grep -qE -- "$pattern" "$work/out" || fail "no line matches '$pattern': $*: $(cat "$work/out")"
+}
+
+scenario=$source/hil/scenarios/paper.toml
+fleet=$source/firmware/fleets/paper.toml
+
+# Bad input: one clear message, exit 78 or 2, nothing started.
+expect 78 'nonexistent.toml' "$armada" sim /nonexistent.toml
+expect 78 'nonexistent.toml' "$armada" run /nonexistent.toml --out "$work/none"
+[ ! -e "$work/none" ] || fail "a run of a missing scenario made its output directory"
+printf 'name = "broken\n' >"$work/broken.toml"
+expect 78 'broken.toml:1' "$armada" check "$work/broken.toml"
+expect 78 'broken.toml:1' "$bin/armada-arm" "$work/broken.toml" --arm 1
+sed 's/m_kg = 0.6/m_kg = -0.6/' "$fleet" >"$work/impossible.toml"
+expect 78 'impossible.toml:[0-9]+: .*m_kg' "$armada" check "$work/impossible.toml"
+expect 78 'set.*no_such_key|no_such_key' "$armada" sim "$scenario" --set no_such_key=1
+expect 78 '[Ll]eader|reach' "$armada" sim "$scenario" --set 'graph=[{pins=[1],edges=[]}]'
+expect 2 'no such arm' "$bin/armada-arm" "$fleet" --arm 99
+expect 2 'seeds 9:1' "$armada" sweep "$scenario" --seeds 9:1
+expect 2 'shard 3/2' "$armada" sweep "$scenario" --shard 3/2
+expect 2 'this version' "$armada" run "$scenario" --bus socketcan
+expect 2 'unknown|not expected|required' "$armada" fly
+expect 1 'multicast' unshare -Urn "$bin/armada-arm" "$fleet" --arm 1
+
+# A result that fails its criterion exits 1 and says so.
+expect 1 '^NOT ok' "$armada" sim "$source/hil/scenarios/benign.toml" --seconds 3 --set window_start_s=2.0 --law paper \
+  --estimator paper
+
+# check, sim with a trace, report, sweep in shards.
+expect 0 'A1|reach' "$armada" check "$scenario"
+expect 0 '^ok: fleet RMS' "$armada" sim "$scenario" --seconds 6 --set window_start_s=5.0 --trace "$work/trace" \
+  --json "$work/sim.json"
+cmp -s "$work/sim.json" "$work/trace/metrics.json" || fail "--json and --trace write different metrics"
+expect 0 'report.html' "$armada" report "$work/trace"
+[ -s "$work/trace/report.html" ] || fail "no page"
+short=(--seconds 6 --set window_start_s=5.0)
+"$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --jobs 1 --json "$work/whole.json" >/dev/null || fail "sweep"
+"$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --shard 1/2 --json "$work/s1.json" >/dev/null || fail "shard 1/2"
+"$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --shard 2/2 --json "$work/s2.json" >/dev/null || fail "shard 2/2"
+"$armada" sweep merge "$work/s1.json" "$work/s2.json" --json "$work/merged.json" >/dev/null || fail "merge"
+cmp -s "$work/whole.json" "$work/merged.json" || fail "merged shards differ from the whole sweep"
+
+# Processes in real time. This checks that they work together, not how late this machine is: under a sanitizer or load
+# the fleet may miss its criterion (exit 1), never its results.
+left_behind() { pgrep -f "$work/" >/dev/null; }
+"$armada" run "$scenario" --seconds 4 --set window_start_s=3.0 --out "$work/run" >"$work/out" 2>&1
+code=$?
+[ $code = 0 ] || [ $code = 1 ] || fail "run: exit code $code: $(cat "$work/out")"
+for file in metrics.json hil.json lcm.log can_1.log arm_7.csv timing.csv fleet.toml; do
+  [ -s "$work/run/$file" ] || fail "run left no $file: $(cat "$work/out")"
+done
+/usr/bin/python3 - "$work/run/metrics.json" <<'PY' || fail "metrics of the run"
+import json, sys
+metrics = json.load(open(sys.argv[1]))
+assert metrics["mode"] == "run" and len(metrics["arms"]) == 7
+for arm in metrics["arms"]:
+    assert arm["memory"]["heap_allocations"] in (0, None), arm
+    assert arm["timing"]["ticks"] + arm["timing"]["missed_ticks"] >= 390, arm
+    assert arm["bus"]["lcm_malformed"] == 0 and arm["bus"]["can_malformed"] == 0, arm
+PY
+left_behind && fail "a finished run left processes: $(pgrep -af "$work/")"
+
+# Ctrl-C, and a crash of a process, stop everything.
+wait_for() { # wait_for SECONDS COMMAND...
+  local deadline=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    [ $SECONDS -lt $deadline ] || return 1
+    read -rt 0.05 <> <(:) || true
+  done
+}
+all_up() { [ "$(pgrep -cf "armada-arm $work/")" = 7 ]; }
+none_left() { ! left_behind; }
+"$armada" run "$scenario" --seconds 60 --out "$work/interrupted" >"$work/out" 2>&1 &
+run=$!
+wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
+kill -INT $run
+wait $run
+[ $? = 130 ] || fail "an interrupted run must exit 130: $(cat "$work/out")"
+wait_for 10 none_left || fail "Ctrl-C left processes behind: $(pgrep -af "$work/")"
+
+"$armada" run "$scenario" --seconds 60 --out "$work/crashed" >"$work/out" 2>&1 &
+run=$!
+wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
+pkill -KILL -f "armada-arm $work/.* --arm 3 "
+wait $run
+[ $? = 1 ] || fail "a run with a crashed arm must exit 1: $(cat "$work/out")"
+grep -q 'arm 3' "$work/out" || fail "the message must name arm 3: $(cat "$work/out")"
+wait_for 10 none_left || fail "a crash left processes behind: $(pgrep -af "$work/")"
+
+"$armada" run "$scenario" --seconds 60 --out "$work/killed" >"$work/out" 2>&1 &
+run=$!
+wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
+kill -KILL $run
+wait $run 2>/dev/null
+wait_for 10 none_left || fail "a killed run left processes behind: $(pgrep -af "$work/")"
+
+[ $failures = 0 ] && echo "command line: all as expected"
+exit $((failures > 0))
