@@ -30,7 +30,9 @@ EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t 
   }
 }
 
-JointTruth EmulatedArm::TruthOf(size_t joint) const { return {plant_.q_rad[joint], plant_.dq_rad_s[joint]}; }
+JointTruth EmulatedArm::TruthOf(size_t joint) const {
+  return {plant_.q_rad[joint], plant_.dq_rad_s[joint]};
+}
 
 PlanarPlant::Joints EmulatedArm::Torque() const {
   PlanarPlant::Joints tau_Nm{};
@@ -49,15 +51,18 @@ double EmulatedArm::NextEventClock() const {
 
 void EmulatedArm::ReleaseIfReady() {
   if (released_ || diverged_ || time_s() < -kSameInstant_s) return;
-  if (!std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); })) return;
+  if (!std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); }))
+    return;
   released_ = true;
   plant_.dq_rad_s = start_speed_rad_s_;
 }
 
 void EmulatedArm::Integrate(double dt_s) {
   PlanarPlant::Joints tau_Nm = Torque();
-  const PlanarPlant::Joints d_Nm = disturbance_.At(time_s(), plant_, leader_);
-  for (size_t i = 0; i < drives_.size(); ++i) tau_Nm[i] -= d_Nm[i];
+  const double d_until_s = disturbance_.NextChange(time_s());
+  if (d_until_s != d_until_s_ || std::isinf(d_until_s)) d_Nm_ = disturbance_.At(time_s(), plant_, leader_);
+  d_until_s_ = d_until_s;
+  for (size_t i = 0; i < drives_.size(); ++i) tau_Nm[i] -= d_Nm_[i];
   const PlanarPlant before = plant_;
   plant_.Step(tau_Nm, dt_s);
   const bool sane = std::all_of(plant_.dq_rad_s.begin(), plant_.dq_rad_s.end(),
@@ -75,7 +80,8 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
   const double target_s = t_s - start_s_;
   while (clock_s_ < target_s) {
     const double next_s = std::min(NextEventClock(), target_s);
-    const double step_end_s = next_s - clock_s_ > config_.step_s + kSameInstant_s ? clock_s_ + config_.step_s : next_s;
+    const double step_end_s =
+        next_s - clock_s_ > config_.step_s + kSameInstant_s ? clock_s_ + config_.step_s : next_s;
     if (released_ && step_end_s - clock_s_ > kSameInstant_s) Integrate(step_end_s - clock_s_);
     clock_s_ = step_end_s;
     for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);

@@ -9,11 +9,13 @@
 
 namespace armada {
 
-/// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until every drive is in
-/// torque mode the joints stand on their brakes at the start position; then the plant is let go with the start speed.
+/// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
+/// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
+/// let go with the start speed.
 class EmulatedArm {
  public:
-  /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial disturbances.
+  /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial
+  /// disturbances.
   EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
               const LeaderPath* leader, double start_s);
 
@@ -42,6 +44,8 @@ class EmulatedArm {
   const LeaderPath* leader_;
   std::vector<std::unique_ptr<EmulatedDrive>> drives_;
   PlanarPlant::Joints start_speed_rad_s_;
+  PlanarPlant::Joints d_Nm_{};
+  double d_until_s_ = 0.0;  ///< end of the interval that d_Nm_ is held for
   double start_s_;
   double clock_s_ = 0.0;  ///< since the bench was switched on: the drives' time
   bool released_ = false;

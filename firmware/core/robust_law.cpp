@@ -1,6 +1,7 @@
 #include "firmware/core/robust_law.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace armada {
 
@@ -14,7 +15,7 @@ RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Pa
       observer_(config.disturbance_observer, arm.dof()),
       governor_(config.governor, JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
-      tau_mean_Nm_(JointVector::Zero(arm.dof())) {
+      tau_before_Nm_(JointVector::Zero(arm.dof())) {
   Project(config_.projection, arm_, theta_hat_);
 }
 
@@ -36,7 +37,11 @@ JointVector RobustLaw::Torque(const LawInput& in) {
 }
 
 void RobustLaw::Learn(const LawInput& in) {
-  const AppliedInterval interval{q_previous_rad_, dq_previous_rad_s_, in.q_rad, in.dq_rad_s, tau_mean_Nm_, in.elapsed_s};
+  // The older torque held for the first L; over missed ticks the newer one went on.
+  const double share_of_old = std::min(1.0, latency_s_ / in.elapsed_s);
+  const JointVector tau_mean_Nm = share_of_old * tau_before_Nm_ + (1.0 - share_of_old) * tau_committed_Nm_;
+  const AppliedInterval interval{q_previous_rad_, dq_previous_rad_s_, in.q_rad,
+                                 in.dq_rad_s,     tau_mean_Nm,        in.elapsed_s};
   const TorqueResidual residual = ResidualOf(arm_, theta_hat_, interval);
   const AdaptationKind kind = config_.adaptation.kind;
   if (kind == AdaptationKind::kKalman || kind == AdaptationKind::kBoth) {
@@ -66,7 +71,8 @@ RobustLaw::State RobustLaw::PredictAcrossLatency(const LawInput& in) const {
 // dq_r(q+, zeta+) of (1.5) at the end of the period, where q+ = q + h (dq + dq_r) / 2 itself depends on dq_r.
 JointVector RobustLaw::TargetVelocity(const State& from, const Zeta& zeta_next, const LawInput& in) const {
   const auto reference_at = [&](const JointVector& q) {
-    return ReferenceVelocity(config_.reference, config_.pseudoinverse, config_.subtask, arm_, q, zeta_next, in.synced);
+    return ReferenceVelocity(config_.reference, config_.pseudoinverse, config_.subtask, arm_, q, zeta_next,
+                             in.synced);
   };
   const double h = in.period_s;
   const JointVector q_coasting = from.q_rad + h * from.dq_rad_s;
@@ -74,7 +80,8 @@ JointVector RobustLaw::TargetVelocity(const State& from, const Zeta& zeta_next, 
   for (int iteration = 0; iteration < 2; ++iteration) {
     const bool reachable =
         (target - from.dq_rad_s).cwiseAbs().maxCoeff() <= governor_.acceleration_limit_rad_s2() * h;
-    target = reference_at(reachable ? JointVector(from.q_rad + (0.5 * h) * (from.dq_rad_s + target)) : q_coasting);
+    target =
+        reference_at(reachable ? JointVector(from.q_rad + (0.5 * h) * (from.dq_rad_s + target)) : q_coasting);
   }
   return target;
 }
@@ -83,11 +90,13 @@ JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawI
   const double h = in.period_s;
   const JointVector& dq = from.dq_rad_s;
   const JointVector dq_mid = follows ? JointVector(0.5 * (dq + governor_.end_rad_s())) : dq;
-  const double mid_weight = follows ? 0.25 : 0.0;  // q at mid-period: along the mean of dq and dq_mid, or along dq
+  // q at mid-period: along the mean of dq and dq_mid, or along dq.
+  const double mid_weight = follows ? 0.25 : 0.0;
   const JointVector q_mid = from.q_rad + h * ((0.5 - mid_weight) * dq + mid_weight * dq_mid);
   const PlanarArm::Posture at = arm_.At(q_mid);
   const JointVector dq_r = 0.5 * (governor_.start_rad_s() + governor_.end_rad_s());
-  const JointVector ddq_r = (governor_.end_rad_s() - governor_.start_rad_s()) / h;  // (1.6) by exact difference
+  // (1.6) by exact difference.
+  const JointVector ddq_r = (governor_.end_rad_s() - governor_.start_rad_s()) / h;
 
   // (1.2) with s at the end of the step: H (s+ - s)/h + (K_s + J'K_x J) s+ + K_r sgn(s+) = 0.
   const JointVector s = dq - governor_.start_rad_s();
@@ -100,8 +109,7 @@ JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawI
       MinimizeWithL1(config_.implicit_control, A, H_hat_ * s, h * config_.gains.K_r_Nm);
 
   const RegressorMatrix Y = arm_.Regressor(at, dq_mid, dq_r, ddq_r);
-  const JointVector u =
-      Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + observer_.d_hat_Nm();
+  const JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + observer_.d_hat_Nm();
 
   const AdaptationKind kind = config_.adaptation.kind;
   if (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth) {
@@ -113,8 +121,7 @@ JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawI
 
 void RobustLaw::Applied(const JointVector& wanted_Nm, const JointVector& sent_Nm) {
   if (sent_Nm != wanted_Nm) governor_.Shift(period_s_ * H_hat_.llt().solve(sent_Nm - wanted_Nm));
-  const double share_of_old = latency_s_ / period_s_;
-  tau_mean_Nm_ = share_of_old * tau_committed_Nm_ + (1.0 - share_of_old) * sent_Nm;
+  tau_before_Nm_ = tau_committed_Nm_;
   tau_committed_Nm_ = sent_Nm;
 }
 

@@ -9,7 +9,8 @@ namespace armada {
 /// Steps and their reasons: docs/equations.md.
 class RobustLaw {
  public:
-  /// `theta_hat` is projected first. `sample_to_torque_s` is the delay L that is compensated, below one period.
+  /// `theta_hat` is projected first. `sample_to_torque_s` is the delay L that is compensated, below one
+  /// period.
   RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
             double sample_to_torque_s);
 
@@ -42,7 +43,7 @@ class RobustLaw {
   bool started_ = false;
   JointVector q_previous_rad_, dq_previous_rad_s_;
   JointVector tau_committed_Nm_;  ///< on its way to, or at, the drives
-  JointVector tau_mean_Nm_;       ///< mean over the period that began with the previous sample
+  JointVector tau_before_Nm_;     ///< in force until that one took over
   JointMatrix H_hat_;             ///< of this tick, for anti-windup
   double period_s_ = 0.0;
 };

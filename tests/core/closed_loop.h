@@ -26,17 +26,20 @@ class ClosedLoop {
   double time_s() const { return static_cast<double>(tick_) * period_s_; }
   /// The latency of the world; that of the configuration unless set.
   void set_latency_s(double latency_s) { latency_s_ = latency_s; }
+  /// Time from the tick to the joints' sample; the neighbours are those of the tick.
+  void set_sample_delay_s(double delay_s) { sample_delay_s_ = delay_s; }
   /// Torque that the world adds, N m.
   void set_disturbance(const JointVector& d_Nm) { d_Nm_ = d_Nm; }
 
   /// What the controller would see at this tick.
   ArmInput Sample() const {
     ArmInput in;
-    in.tick_s = in.sample_s = time_s();
+    in.sample_s = time_s();
+    in.tick_s = in.sample_s - sample_delay_s_;
     in.q_rad = FromPlant(plant_, plant_.q_rad);
     in.dq_rad_s = FromPlant(plant_, plant_.dq_rad_s);
     in.neighbours.count = 1;
-    in.neighbours.list[0] = {1.0, leader_(time_s()), 0.0, Estimator::kMaxAgreement, true};
+    in.neighbours.list[0] = {1.0, leader_(in.tick_s), 0.0, Estimator::kMaxAgreement, true};
     return in;
   }
 
@@ -84,6 +87,7 @@ class ClosedLoop {
 
   double period_s_;
   double latency_s_;
+  double sample_delay_s_ = 0.0;
   ArmController controller_;
   PlanarPlant plant_;
   JointVector tau_Nm_;

@@ -29,8 +29,8 @@ ScenarioConfig Scenario(int dof = 1) {
 class Bench {
  public:
   explicit Bench(const ScenarioConfig& scenario, const ArmStart& start = {}, double start_s = -0.5,
-                 uint64_t seed = 1)
-      : dof_(scenario.fleet.arms[0].arm.dof), arm_(scenario, 0, seed, start, nullptr, start_s) {}
+                 uint64_t seed = 1, const LeaderPath* leader = nullptr)
+      : dof_(scenario.fleet.arms[0].arm.dof), arm_(scenario, 0, seed, start, leader, start_s) {}
 
   EmulatedArm& arm() { return arm_; }
 
@@ -158,6 +158,25 @@ TEST(EmulatedArm, HeldDisturbanceActsOverItsIntervals) {
     expected -= 0.0033 * disturbance.At(0.0033 * (k + 0.5), bench.arm().plant(), nullptr)[0] / 2.0;
   }
   EXPECT_NEAR(bench.arm().plant().dq_rad_s[0], expected, 1e-6);
+}
+
+// Away from a leader at (1, 0): clockwise from q < 0, and so on to the end of the hold although q has passed
+// 0 by then.
+TEST(EmulatedArm, AdversarialDisturbanceIsHeldToo) {
+  ScenarioConfig scenario = Scenario();
+  scenario.disturbance = {DisturbanceKind::kAdversarial, 6.0, 0.05, 0.0};
+  scenario.leader.axes = {{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}};
+  const LeaderPath leader(scenario.leader);
+  ArmStart start;
+  start.q_rad[0] = -0.01;
+  start.dq_rad_s[0] = 1.0;
+  Bench bench(scenario, start, -0.5, 1, &leader);
+  bench.EnableAll(-0.4);
+  bench.AdvanceTo(0.05);
+  EXPECT_GT(bench.arm().plant().q_rad[0], 0.0);
+  EXPECT_NEAR(bench.arm().plant().dq_rad_s[0], 1.0 - 3.0 * 0.05, 1e-9);
+  bench.AdvanceTo(0.1);
+  EXPECT_NEAR(bench.arm().plant().dq_rad_s[0], 1.0, 1e-9);
 }
 
 TEST(EmulatedArm, FreezesWhenItsSpeedLeavesEveryBound) {

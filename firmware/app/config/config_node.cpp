@@ -1,6 +1,7 @@
 #include "firmware/app/config/config_node.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "firmware/app/config/value_text.h"
 
