@@ -10,7 +10,9 @@ namespace armada {
 namespace {
 
 // Index of the hold interval that contains t, robust against rounding at its start.
-double Interval(double t_s, double hold_s) { return std::floor(t_s / hold_s + 1e-6); }
+double Interval(double t_s, double hold_s) {
+  return std::floor(t_s / hold_s + 1e-6);
+}
 
 // Sign of J' (x - x_0) by joint: the torque direction that pushes the end effector away from the leader.
 PlanarPlant::Joints AwayFromLeader(const PlanarPlant& plant, const Zeta& leader) {
@@ -50,14 +52,17 @@ PlanarPlant::Joints Disturbance::At(double t_s, const PlanarPlant& plant, const 
     switch (config_.kind) {
       case DisturbanceKind::kUniform: {
         const uint64_t place = static_cast<uint64_t>(arm_id_) * kMaxDof + i;
-        d_Nm[i] = Uniform(RandomBits(seed_, kDisturbanceStream, place, interval), -config_.amplitude_Nm, config_.amplitude_Nm);
+        d_Nm[i] = Uniform(RandomBits(seed_, kDisturbanceStream, place, interval), -config_.amplitude_Nm,
+                          config_.amplitude_Nm);
         break;
       }
       case DisturbanceKind::kSine:
         d_Nm[i] = config_.amplitude_Nm *
                   std::sin(2.0 * std::numbers::pi * (config_.frequency_hz + 0.2 * joint) * t_s + joint);
         break;
-      default: d_Nm[i] = config_.amplitude_Nm; break;
+      default:
+        d_Nm[i] = config_.amplitude_Nm;
+        break;
     }
   }
   return d_Nm;

@@ -74,7 +74,8 @@ struct StartConfig {
     parameter({"dq_range_rad_s", "rad/s", 0, 100, "box: dq(0) uniform in +- this"}, dq_range_rad_s);
     parameter({"zeta_range", "m, m/s, m/s^2", 0, 100, "every element of zeta(0) uniform in +- this"},
               zeta_range);
-    parameter({"zeta_x_centre_m", "m", -100, 100, "x part of zeta(0) lies around this, unless the start is near_leader"},
+    parameter({"zeta_x_centre_m", "m", -100, 100,
+               "x part of zeta(0) lies around this, unless the start is near_leader"},
               zeta_x_centre_m);
     parameter({"theta_hat_max", "kg m^2", 0, 1e3, "every element of theta_hat(0) uniform in [0, this]"},
               theta_hat_max);

@@ -7,7 +7,8 @@
 namespace armada {
 namespace {
 
-// Joint angles that put the end effector at x, from a bent elbow: damped least squares, always the same branch.
+// Joint angles that put the end effector at x, from a bent elbow: damped least squares, always the same
+// branch.
 JointVector SolveInverseKinematics(const PlanarArm& arm, const TaskVector& x) {
   JointVector q = JointVector::Constant(arm.dof(), 1.2);
   q[0] = 0.3 - arm.config().base_orientation_rad;

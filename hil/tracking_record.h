@@ -8,7 +8,8 @@
 
 namespace armada {
 
-/// Errors of one arm's end effector, sampled at 1 kHz of plant time: what `metrics.json` says of an arm's motion.
+/// Errors of one arm's end effector, sampled at 1 kHz of plant time: what `metrics.json` says of an arm's
+/// motion.
 class TrackingRecord {
  public:
   static constexpr double kSamplePeriod_s = 0.001;

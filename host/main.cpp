@@ -14,7 +14,9 @@
 
 namespace {
 
-std::string ProgramDirectory() { return std::filesystem::read_symlink("/proc/self/exe").parent_path().string(); }
+std::string ProgramDirectory() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+}
 
 }  // namespace
 
@@ -25,7 +27,8 @@ int main(int argc, char** argv) {
   int code = kExitOk;
 
   CheckOptions check;
-  CLI::App* check_command = app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
+  CLI::App* check_command =
+      app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
   check_command->add_option("FILE", check.path, "fleet or scenario file")->required();
   check_command->add_option("--set", check.sets, "key=value: any parameter of the file")->take_all();
   check_command->add_flag("--json", check.json, "print JSON");
@@ -34,9 +37,11 @@ int main(int argc, char** argv) {
   SimOptions sim;
   CLI::App* sim_command = app.add_subcommand("sim", "run a scenario in virtual time");
   sim.scenario.AddTo(sim_command);
-  sim_command->add_option("--seed", sim.seed, "seed of start states, disturbance and noise")->capture_default_str();
+  sim_command->add_option("--seed", sim.seed, "seed of start states, disturbance and noise")
+      ->capture_default_str();
   sim_command->add_option("--json", sim.json, "write metrics.json here");
-  sim_command->add_option("--trace", sim.trace, "write traces and metrics into this directory, for `armada report`");
+  sim_command->add_option("--trace", sim.trace,
+                          "write traces and metrics into this directory, for `armada report`");
   sim_command->callback([&] { code = RunSimCommand(sim); });
 
   SweepOptions sweep;
@@ -51,7 +56,8 @@ int main(int argc, char** argv) {
   sweep_command->get_option("SCENARIO")->required(false);
   sweep_command->add_option("--seeds", sweep.seeds, "A:B, both included")->capture_default_str();
   sweep_command->add_option("--jobs", sweep.jobs, "threads; 0: all cores")->capture_default_str();
-  sweep_command->add_option("--shard", sweep.shard, "I/N: every N-th seed from the I-th")->capture_default_str();
+  sweep_command->add_option("--shard", sweep.shard, "I/N: every N-th seed from the I-th")
+      ->capture_default_str();
   sweep_command->add_option("--json", sweep.json, "write the result here, every seed included");
   sweep_command->callback([&] {
     if (!merge_command->parsed()) code = RunSweepCommand(sweep);
@@ -62,14 +68,18 @@ int main(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes in real time");
   run.scenario.AddTo(run_command);
   run_command->add_option("--bus", run.bus, "udp: the user-space CAN bus")->capture_default_str();
-  run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")->capture_default_str();
-  run_command->add_option("--out", run.out, "directory for logs, traces and results")->take_last()->capture_default_str();
+  run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")
+      ->capture_default_str();
+  run_command->add_option("--out", run.out, "directory for logs, traces and results")
+      ->take_last()
+      ->capture_default_str();
   run_command->add_option("--json", run.json, "write metrics.json here, too");
   run_command->callback([&] { code = RunRunCommand(run); });
 
   std::string report;
   CLI::App* report_command = app.add_subcommand("report", "figures and a page of a finished run");
-  report_command->add_option("DIR", report, "directory written by `armada run` or `armada sim --trace`")->required();
+  report_command->add_option("DIR", report, "directory written by `armada run` or `armada sim --trace`")
+      ->required();
   report_command->callback([&] { code = RunReportCommand(report); });
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {

@@ -47,7 +47,8 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
   }
   fleet_rms_m = arms.empty() ? 0.0 : std::sqrt(sum_squares_m2 / static_cast<double>(arms.size()));
   if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;
-  if (criterion.kind == CriterionKind::kAgreement && !(estimate_spread_m < criterion.agreement_max_m)) ok = false;
+  if (criterion.kind == CriterionKind::kAgreement && !(estimate_spread_m < criterion.agreement_max_m))
+    ok = false;
 }
 
 nlohmann::ordered_json ToJson(const RunMetrics& metrics) {

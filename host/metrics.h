@@ -28,9 +28,9 @@ struct ArmMetrics {
   EstimatorRms estimator_rms;
   double torque_max_Nm = 0.0;
   int saturated_ticks = 0;
-  double parameter_error = 0.0;              ///< |theta_hat - theta| / |theta| at the end
-  std::optional<double> subtask_rms_rad_s;   ///< RMS of |e_s| in the window; none without a subtask
-  std::optional<double> posture_rms_rad;     ///< RMS distance from the posture's goal in the window
+  double parameter_error = 0.0;             ///< |theta_hat - theta| / |theta| at the end
+  std::optional<double> subtask_rms_rad_s;  ///< RMS of |e_s| in the window; none without a subtask
+  std::optional<double> posture_rms_rad;    ///< RMS distance from the posture's goal in the window
   std::string state = "INIT";
   std::vector<std::string> faults;
 };

@@ -16,7 +16,8 @@ namespace {
 // The same scenario and seed with every subtask off, in virtual time.
 int SimulateWithoutSubtasks(const std::string& directory) {
   std::vector<ConfigError> errors;
-  const auto scenario = LoadScenario(directory + "/scenario.toml", {"arm.*.control.subtask.kind=none"}, &errors);
+  const auto scenario =
+      LoadScenario(directory + "/scenario.toml", {"arm.*.control.subtask.kind=none"}, &errors);
   if (!scenario) {
     PrintErrors(errors, std::cerr);
     return kExitBadConfig;
@@ -27,12 +28,14 @@ int SimulateWithoutSubtasks(const std::string& directory) {
     std::cerr << "armada report: " << directory << "/metrics.json is missing or not of a run\n";
     return kExitFailed;
   }
-  const bool any_subtask = std::any_of(json.at("arms").begin(), json.at("arms").end(),
-                                       [](const auto& arm) { return arm.value("subtask", "none") != "none"; });
+  const bool any_subtask = std::any_of(json.at("arms").begin(), json.at("arms").end(), [](const auto& arm) {
+    return arm.value("subtask", "none") != "none";
+  });
   if (!any_subtask) return kExitOk;
   RunMetrics metrics;
   std::string error;
-  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", &metrics, &error)) {
+  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", &metrics,
+                    &error)) {
     std::cerr << "armada report: " << error << '\n';
     return kExitFailed;
   }

@@ -10,9 +10,12 @@ namespace armada {
 void ScenarioArguments::AddTo(CLI::App* command) {
   command->add_option("SCENARIO", scenario, "scenario file (TOML)")->required();
   command->add_option("--law", law, "local law instead of the fleet's: paper, robust");
-  command->add_option("--estimator", estimator, "estimator instead of the fleet's: paper, implicit, predictive");
+  command->add_option("--estimator", estimator,
+                      "estimator instead of the fleet's: paper, implicit, predictive");
   command->add_option("--seconds", seconds, "length of the run instead of the scenario's")->take_last();
-  command->add_option("--set", sets, "key=value: any parameter of scenario or fleet, e.g. control.reference.alpha_1_s=40")
+  command
+      ->add_option("--set", sets,
+                   "key=value: any parameter of scenario or fleet, e.g. control.reference.alpha_1_s=40")
       ->take_all();
 }
 

@@ -8,9 +8,13 @@
 namespace armada {
 namespace {
 
-int64_t Nanoseconds(double seconds) { return static_cast<int64_t>(seconds * 1e9 + 0.5); }
+int64_t Nanoseconds(double seconds) {
+  return static_cast<int64_t>(seconds * 1e9 + 0.5);
+}
 
-int32_t Microseconds(int64_t duration_ns) { return static_cast<int32_t>(duration_ns / 1000); }
+int32_t Microseconds(int64_t duration_ns) {
+  return static_cast<int32_t>(duration_ns / 1000);
+}
 
 }  // namespace
 

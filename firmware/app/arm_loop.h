@@ -14,7 +14,7 @@ namespace armada {
 /// What one run of the loop came to.
 struct LoopReport {
   DurationHistogram wakeup_lateness;
-  DurationHistogram compute;           ///< from the last feedback frame to the last torque frame handed to the bus
+  DurationHistogram compute;  ///< from the last feedback frame to the last torque frame handed to the bus
   DurationHistogram sample_to_torque;  ///< from the request for samples to the same
   int64_t ticks = 0;
   int64_t missed_ticks = 0;
@@ -23,13 +23,14 @@ struct LoopReport {
   int64_t page_faults = 0;         ///< since the first tick
 };
 
-/// The 100 Hz loop of one board: absolute deadlines on the grid of the epoch, no catch-up bursts. Allocates and logs
-/// nothing after the first tick.
+/// The 100 Hz loop of one board: absolute deadlines on the grid of the epoch, no catch-up bursts. Allocates
+/// and logs nothing after the first tick.
 class ArmLoop {
  public:
   ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns);
 
-  /// Brings the drives up until the epoch; false when one of them is not in torque mode by then, or on `*stop`.
+  /// Brings the drives up until the epoch; false when one of them is not in torque mode by then, or on
+  /// `*stop`.
   bool BringUp(const volatile std::sig_atomic_t* stop);
   /// Runs ticks until `end_ns` or `*stop`, then disables the drives.
   void Run(int64_t end_ns, const volatile std::sig_atomic_t* stop);

@@ -22,7 +22,9 @@ namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-void RequestStop(int) { stop_requested = 1; }
+void RequestStop(int) {
+  stop_requested = 1;
+}
 
 void StopOnSignals() {
   struct sigaction action {};
@@ -59,7 +61,8 @@ int Run(const Options& options) {
     return kExitUsage;
   }
   const ArmEntry& entry = fleet->arms[static_cast<size_t>(index)];
-  const auto initial = options.initial.empty() ? NominalInitialState(entry) : LoadInitialState(options.initial, entry, &errors);
+  const auto initial = options.initial.empty() ? NominalInitialState(entry)
+                                               : LoadInitialState(options.initial, entry, &errors);
   if (!initial) {
     PrintErrors(errors, std::cerr);
     return kExitBadConfig;
@@ -73,7 +76,8 @@ int Run(const Options& options) {
   if (!bus) return Fail(options, error);
 
   const RealtimeGrant grant = EnterRealtime(options.priority);
-  if (!grant.complaint.empty()) std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, grant.complaint.c_str());
+  if (!grant.complaint.empty())
+    std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, grant.complaint.c_str());
   StopOnSignals();
 
   constexpr int64_t kBringUpNs = 1'000'000'000;
@@ -83,8 +87,9 @@ int Run(const Options& options) {
   const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns);
   const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), fleet->timing, epoch_ns);
   if (!loop->BringUp(&stop_requested)) {
-    return Fail(options, stop_requested != 0 ? "stopped before the start"
-                                             : "not every drive on " + entry.bus + " reached torque mode before the start");
+    return Fail(options, stop_requested != 0
+                             ? "stopped before the start"
+                             : "not every drive on " + entry.bus + " reached torque mode before the start");
   }
   loop->Run(end_ns, &stop_requested);
 
@@ -101,15 +106,19 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   armada::Options options;
-  CLI::App app("Controller of one arm of a fleet: 100 Hz, fixed memory. HAZARD: it moves the arm as soon as it starts.",
-               "armada-arm");
+  CLI::App app(
+      "Controller of one arm of a fleet: 100 Hz, fixed memory. HAZARD: it moves the arm as soon as it "
+      "starts.",
+      "armada-arm");
   app.add_option("FLEET", options.fleet, "fleet file (TOML)")->required();
   app.add_option("--arm", options.arm_id, "id of this board's arm")->required();
-  app.add_option("--epoch-ns", options.epoch_ns, "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now");
+  app.add_option("--epoch-ns", options.epoch_ns,
+                 "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now");
   app.add_option("--seconds", options.seconds, "length of the run; default: until SIGINT or SIGTERM");
   app.add_option("--initial", options.initial, "file with zeta(0) and theta_hat(0); default: nominal");
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
-  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")->check(CLI::Range(0, 99));
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
+      ->check(CLI::Range(0, 99));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -11,9 +11,13 @@ namespace {
 
 constexpr int kLeader = 0;
 
-double Seconds(int64_t duration_ns) { return 1e-9 * static_cast<double>(duration_ns); }
+double Seconds(int64_t duration_ns) {
+  return 1e-9 * static_cast<double>(duration_ns);
+}
 
-void Copy(const TaskVector& from, double (&to)[3]) { std::copy(from.data(), from.data() + from.size(), to); }
+void Copy(const TaskVector& from, double (&to)[3]) {
+  std::copy(from.data(), from.data() + from.size(), to);
+}
 
 TaskVector ToTask(const double (&from)[3]) {
   TaskVector to(PlanarArm::kTaskDim);
@@ -23,7 +27,8 @@ TaskVector ToTask(const double (&from)[3]) {
 
 std::unique_ptr<JointDrive> MakeDrive(DriveProfile profile, const JointDriveConfig& config) {
   switch (profile) {
-    case DriveProfile::kODriveCanSimple: break;
+    case DriveProfile::kODriveCanSimple:
+      break;
   }
   return std::make_unique<ODriveCanSimple>(config);
 }
@@ -55,7 +60,8 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
 }
 
 void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight) {
-  auto source = std::find_if(sources_.begin(), sources_.end(), [&](const Source& s) { return s.arm_id == arm_id; });
+  auto source =
+      std::find_if(sources_.begin(), sources_.end(), [&](const Source& s) { return s.arm_id == arm_id; });
   if (source == sources_.end()) {
     sources_.push_back({.arm_id = arm_id, .clock = ClockOffset(fleet.link.clock)});
     source = sources_.end() - 1;
@@ -77,7 +83,8 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   const Zeta& zeta = controller_.zeta();
   const bool started = controller_.zeta_time_s() > 0.0;
   estimate_t message{};
-  message.stamp_ns = started ? epoch_ns_ + static_cast<int64_t>(controller_.zeta_time_s() * 1e9 + 0.5) : tick_ns;
+  message.stamp_ns =
+      started ? epoch_ns_ + static_cast<int64_t>(controller_.zeta_time_s() * 1e9 + 0.5) : tick_ns;
   message.sequence = ++estimate_sequence_;
   message.arm_id = static_cast<int8_t>(id_);
   message.task_dim = PlanarArm::kTaskDim;
@@ -114,7 +121,8 @@ bool ArmNode::SamplesComplete() const {
 template <class Message>
 bool ArmNode::Take(Source& source, const Message& message, int64_t arrival_ns) {
   if (message.task_dim != PlanarArm::kTaskDim) return false;
-  if (source.clock.Update({message.sequence, message.stamp_ns, arrival_ns}) == Freshness::kStale) return false;
+  if (source.clock.Update({message.sequence, message.stamp_ns, arrival_ns}) == Freshness::kStale)
+    return false;
   source.stamp_ns = message.stamp_ns;
   source.neighbour.zeta = {ToTask(message.x_m), ToTask(message.v_m_s), ToTask(message.a_m_s2)};
   source.neighbour.heard = true;
@@ -160,7 +168,8 @@ void ArmNode::ReadNeighbours(int64_t tick_ns) {
     if (source.neighbour.heard) {
       source.neighbour.age_s = AgeOf(source, tick_ns);
       if (source.neighbour.weight > 0.0 && source.leader_age_s >= 0.0f) {
-        leader_age_s = std::min(leader_age_s, source.leader_age_s + static_cast<float>(source.neighbour.age_s));
+        leader_age_s =
+            std::min(leader_age_s, source.leader_age_s + static_cast<float>(source.neighbour.age_s));
       }
     }
     input_.neighbours.list[i] = source.neighbour;
@@ -168,8 +177,8 @@ void ArmNode::ReadNeighbours(int64_t tick_ns) {
   leader_age_s_ = leader_age_s < std::numeric_limits<float>::infinity() ? leader_age_s : -1.0f;
 }
 
-// Joint state at one instant from samples of slightly different ones, missing ones predicted. False when a sample is so
-// old that no torque may rest on it.
+// Joint state at one instant from samples of slightly different ones, missing ones predicted. False when a
+// sample is so old that no torque may rest on it.
 bool ArmNode::ReadJoints(int64_t tick_ns) {
   // A drive samples between the request and the answer's arrival.
   int64_t sum_ns = 0;
@@ -228,7 +237,9 @@ void ArmNode::FillTelemetry(telemetry_t* telemetry) {
   telemetry->parameter_count = static_cast<int8_t>(theta_hat.size());
   telemetry->state = static_cast<int8_t>(state_);
   telemetry->synced = static_cast<int8_t>(controller_.estimator().synced());
-  const auto copy = [](const auto& from, double* to) { std::copy(from.data(), from.data() + from.size(), to); };
+  const auto copy = [](const auto& from, double* to) {
+    std::copy(from.data(), from.data() + from.size(), to);
+  };
   copy(input_.q_rad, telemetry->q_rad);
   copy(input_.dq_rad_s, telemetry->dq_rad_s);
   copy(status.tau_Nm, telemetry->tau_Nm);

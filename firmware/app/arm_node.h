@@ -14,9 +14,9 @@
 
 namespace armada {
 
-/// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages out. The process
-/// and the simulation run the same object. It allocates in the constructor only. Times are nanoseconds of the board's
-/// monotonic clock; the fleet's time 0 is `epoch_ns`.
+/// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages
+/// out. The process and the simulation run the same object. It allocates in the constructor only. Times are
+/// nanoseconds of the board's monotonic clock; the fleet's time 0 is `epoch_ns`.
 class ArmNode {
  public:
   ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns);
@@ -55,7 +55,7 @@ class ArmNode {
     ClockOffset clock;
     int64_t stamp_ns = 0;
     Neighbour neighbour{};
-    float leader_age_s = -1.0f;  ///< as sent
+    float leader_age_s = -1.0f;                                ///< as sent
     std::array<double, TopologySchedule::kMaxCount> weight{};  ///< by topology
   };
 

@@ -6,8 +6,8 @@
 
 namespace armada {
 
-/// Durations counted in bins of 1 us up to 20 ms, without a heap: percentiles of a whole run. Longer ones share the last
-/// bin; the maximum is exact.
+/// Durations counted in bins of 1 us up to 20 ms, without a heap: percentiles of a whole run. Longer ones
+/// share the last bin; the maximum is exact.
 class DurationHistogram {
  public:
   void Add(int64_t duration_ns) {

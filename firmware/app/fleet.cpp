@@ -13,7 +13,8 @@ int FleetConfig::IndexOf(int id) const {
 
 Digraph FleetConfig::Graph(size_t topology) const {
   Digraph graph(static_cast<int>(arms.size()));
-  for (const Edge& edge : topologies[topology].edges) graph.SetWeight(IndexOf(edge.to), IndexOf(edge.from), edge.weight);
+  for (const Edge& edge : topologies[topology].edges)
+    graph.SetWeight(IndexOf(edge.to), IndexOf(edge.from), edge.weight);
   for (const Pin& pin : topologies[topology].pins) graph.SetPin(IndexOf(pin.arm), pin.weight);
   return graph;
 }
@@ -27,7 +28,8 @@ size_t TopologySchedule::At(double t_s) const {
 ArmControllerConfig FleetConfig::ControllerConfig(size_t index) const {
   const ArmEntry& entry = arms[index];
   JointVector torque_limit_Nm(entry.arm.dof);
-  for (int i = 0; i < entry.arm.dof; ++i) torque_limit_Nm[i] = entry.joints[static_cast<size_t>(i)].torque_limit_Nm;
+  for (int i = 0; i < entry.arm.dof; ++i)
+    torque_limit_Nm[i] = entry.joints[static_cast<size_t>(i)].torque_limit_Nm;
   return {timing, entry.arm, estimator, entry.control, torque_limit_Nm};
 }
 

@@ -19,9 +19,11 @@ struct LcmLinkConfig {
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
-    parameter({"lcm_url", "", 0, 0, "LCM multicast group, port and ttl: 0 on one machine, 1 between boards"}, lcm_url);
+    parameter({"lcm_url", "", 0, 0, "LCM multicast group, port and ttl: 0 on one machine, 1 between boards"},
+              lcm_url);
     parameter({"shared_clock", "", 0, 1,
-               "all boards read one monotonic clock (one machine, or disciplined): ages need no estimate of offsets"},
+               "all boards read one monotonic clock (one machine, or disciplined): ages need no estimate of "
+               "offsets"},
               shared_clock);
     parameter.Table("clock", clock);
   }

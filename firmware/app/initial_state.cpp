@@ -26,7 +26,8 @@ std::optional<ArmInitialState> LoadInitialState(const std::string& path, const A
   const auto require_size = [&](const char* key, Eigen::Index given, Eigen::Index allowed) {
     if (given == allowed) return;
     Report(ConfigCursor(*root).At(key),
-           "given " + std::to_string(given) + " values, arm " + std::to_string(arm.id) + " has " + std::to_string(allowed),
+           "given " + std::to_string(given) + " values, arm " + std::to_string(arm.id) + " has " +
+               std::to_string(allowed),
            errors);
   };
   require_size("zeta_x_m", file.zeta_x_m.size(), PlanarArm::kTaskDim);

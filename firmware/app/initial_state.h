@@ -21,11 +21,13 @@ struct InitialStateFile {
     parameter({"zeta_x_m", "m", -1e6, 1e6, "x_hat at the start"}, zeta_x_m);
     parameter({"zeta_v_m_s", "m/s", -1e6, 1e6, "v_hat at the start"}, zeta_v_m_s);
     parameter({"zeta_a_m_s2", "m/s^2", -1e6, 1e6, "a_hat at the start"}, zeta_a_m_s2);
-    parameter({"theta_hat", "kg m^2, kg m", -1e6, 1e6, "theta_hat at the start, in the order of PlanarArm"}, theta_hat);
+    parameter({"theta_hat", "kg m^2, kg m", -1e6, 1e6, "theta_hat at the start, in the order of PlanarArm"},
+              theta_hat);
   }
 };
 
-/// Where a controller starts when nobody says otherwise: zeta = 0, theta_hat from the fleet file's nominal links.
+/// Where a controller starts when nobody says otherwise: zeta = 0, theta_hat from the fleet file's nominal
+/// links.
 ArmInitialState NominalInitialState(const ArmEntry& arm);
 
 /// Reads the file; what it leaves out is nominal. Nothing, and errors, when it does not fit the arm.

@@ -29,7 +29,8 @@ int64_t ResidentBytes() {
 void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus, const LcmEndpoint& link,
                      const RealtimeGrant& grant, std::ostream& out) {
   const LoopReport& report = loop.report();
-  out << "{\n  \"id\": " << node.id() << ",\n  \"state\": \"" << NameOf(loop.final_state()) << "\",\n  \"timing\": {\n";
+  out << "{\n  \"id\": " << node.id() << ",\n  \"state\": \"" << NameOf(loop.final_state())
+      << "\",\n  \"timing\": {\n";
   Put(out, "wakeup_lateness", report.wakeup_lateness);
   Put(out, "compute", report.compute);
   Put(out, "sample_to_torque", report.sample_to_torque);
@@ -49,8 +50,10 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
   out << "  \"bus\": {\n    \"can_sent\": " << can.sent << ",\n    \"can_received\": " << can.received
       << ",\n    \"can_dropped\": " << can.dropped_queue_full << ",\n    \"can_malformed\": " << can.malformed
       << ",\n    \"can_errors\": " << can.errors << ",\n    \"lcm_sent\": " << lcm.sent
-      << ",\n    \"lcm_received\": " << lcm.received << ",\n    \"lcm_rejected\": " << node.rejected_messages()
-      << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed << "\n  }\n}\n";
+      << ",\n    \"lcm_received\": " << lcm.received
+      << ",\n    \"lcm_rejected\": " << node.rejected_messages()
+      << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed
+      << "\n  }\n}\n";
 }
 
 }  // namespace armada

@@ -7,7 +7,8 @@
 
 namespace armada {
 
-/// The board's own figures as JSON: "timing", "memory" and "bus" of metrics.json, and the controller's end state.
+/// The board's own figures as JSON: "timing", "memory" and "bus" of metrics.json, and the controller's end
+/// state.
 void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus, const LcmEndpoint& link,
                      const RealtimeGrant& grant, std::ostream& out);
 

@@ -38,14 +38,16 @@ RealtimeGrant EnterRealtime(int priority, size_t stack_bytes) {
   mallopt(M_MMAP_MAX, 0);
   grant.memory_locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   if (!grant.memory_locked) {
-    grant.complaint += std::string("memory not locked (") + std::strerror(errno) + "; raise RLIMIT_MEMLOCK). ";
+    grant.complaint +=
+        std::string("memory not locked (") + std::strerror(errno) + "; raise RLIMIT_MEMLOCK). ";
   }
   TouchStack(stack_bytes);
   if (priority > 0) {
     const sched_param parameters{.sched_priority = priority};
     grant.fifo = sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
     if (!grant.fifo) {
-      grant.complaint += std::string("no SCHED_FIFO (") + std::strerror(errno) + "; raise RLIMIT_RTPRIO or run as root). ";
+      grant.complaint +=
+          std::string("no SCHED_FIFO (") + std::strerror(errno) + "; raise RLIMIT_RTPRIO or run as root). ";
     }
   }
   return grant;

@@ -18,8 +18,8 @@ struct RealtimeGrant {
   std::string complaint;  ///< what was refused and what to do; empty when all was granted
 };
 
-/// Locks all present and future memory, touches `stack_bytes` of stack so that it is mapped, keeps the heap from giving
-/// memory back, and asks for SCHED_FIFO at `priority` (0: does not ask). Start-up only.
+/// Locks all present and future memory, touches `stack_bytes` of stack so that it is mapped, keeps the heap
+/// from giving memory back, and asks for SCHED_FIFO at `priority` (0: does not ask). Start-up only.
 RealtimeGrant EnterRealtime(int priority, size_t stack_bytes = size_t{512} * 1024);
 
 /// Page faults of this process so far, minor and major.

@@ -4,7 +4,8 @@
 
 namespace armada {
 
-TorqueResidual ResidualOf(const PlanarArm& arm, const ParameterVector& theta_hat, const AppliedInterval& interval) {
+TorqueResidual ResidualOf(const PlanarArm& arm, const ParameterVector& theta_hat,
+                          const AppliedInterval& interval) {
   const JointVector q_mid = 0.5 * (interval.q_start_rad + interval.q_end_rad);
   TorqueResidual residual{arm.At(q_mid), 0.5 * (interval.dq_start_rad_s + interval.dq_end_rad_s), {}, {}};
   const JointMatrix H_hat = arm.Inertia(residual.at, theta_hat);
@@ -20,7 +21,8 @@ ParameterFilter::ParameterFilter(const AdaptationConfig& config, const PlanarArm
   P_ = ParameterMatrix::Identity(count, count) * (config_.initial_deviation * config_.initial_deviation);
 }
 
-void ParameterFilter::Update(const PlanarArm& arm, const TorqueResidual& residual, ParameterVector& theta_hat) {
+void ParameterFilter::Update(const PlanarArm& arm, const TorqueResidual& residual,
+                             ParameterVector& theta_hat) {
   const RegressorMatrix Y =
       arm.Regressor(residual.at, residual.dq_mid_rad_s, residual.dq_mid_rad_s, residual.predicted_ddq_rad_s2);
   const RegressorMatrix YP = Y.lazyProduct(P_);
@@ -41,7 +43,8 @@ void GradientStep(const AdaptationConfig& config, const RegressorMatrix& Y, cons
   ParameterVector step = Y.transpose().lazyProduct(s);
   step *= h_s * config.gradient_T;
   const double length = step.norm();
-  if (config.gradient_step_max > 0.0 && length > config.gradient_step_max) step *= config.gradient_step_max / length;
+  if (config.gradient_step_max > 0.0 && length > config.gradient_step_max)
+    step *= config.gradient_step_max / length;
   theta_hat -= step;
 }
 

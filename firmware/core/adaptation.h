@@ -13,7 +13,8 @@ enum class AdaptationKind {
 
 struct AdaptationConfig {
   AdaptationKind kind = AdaptationKind::kKalman;
-  double torque_deviation_Nm = 23.094;    ///< 40 / sqrt(3): standard deviation of a disturbance uniform in +-40 N m
+  double torque_deviation_Nm =
+      23.094;  ///< 40 / sqrt(3): standard deviation of a disturbance uniform in +-40 N m
   double initial_deviation = 3.0;
   double drift_variance = 1e-5;
   double gradient_T = 0.1;
@@ -22,12 +23,17 @@ struct AdaptationConfig {
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"kind", "", 0, 0, "adaptation of theta_hat: none, kalman, gradient (1.8), both"}, kind);
-    parameter({"torque_deviation_Nm", "N m", 1e-6, 1e5, "Kalman: standard deviation of what disturbs a joint's torque over a tick"},
+    parameter({"torque_deviation_Nm", "N m", 1e-6, 1e5,
+               "Kalman: standard deviation of what disturbs a joint's torque over a tick"},
               torque_deviation_Nm);
-    parameter({"initial_deviation", "kg m^2", 1e-6, 1e4, "Kalman: standard deviation of theta_hat's start"}, initial_deviation);
-    parameter({"drift_variance", "kg^2 m^4", 0, 1, "Kalman: variance added to each parameter a tick"}, drift_variance);
+    parameter({"initial_deviation", "kg m^2", 1e-6, 1e4, "Kalman: standard deviation of theta_hat's start"},
+              initial_deviation);
+    parameter({"drift_variance", "kg^2 m^4", 0, 1, "Kalman: variance added to each parameter a tick"},
+              drift_variance);
     parameter({"gradient_T", "", 0, 1e3, "T of (1.8)"}, gradient_T);
-    parameter({"gradient_step_max", "kg m^2", 0, 1e3, "largest change of theta_hat by the gradient in a tick; 0: no bound"}, gradient_step_max);
+    parameter({"gradient_step_max", "kg m^2", 0, 1e3,
+               "largest change of theta_hat by the gradient in a tick; 0: no bound"},
+              gradient_step_max);
   }
 };
 
@@ -47,10 +53,12 @@ struct TorqueResidual {
   JointVector predicted_ddq_rad_s2;  ///< a_p = H_hat^-1 (u - C_hat dq - g_hat)
   JointVector z_Nm;                  ///< H_hat (Ddq/h - a_p)
 };
-TorqueResidual ResidualOf(const PlanarArm& arm, const ParameterVector& theta_hat, const AppliedInterval& interval);
+TorqueResidual ResidualOf(const PlanarArm& arm, const ParameterVector& theta_hat,
+                          const AppliedInterval& interval);
 
-/// Kalman filter on theta from the torque actually applied (ALGORITHM: step 1). The regressor is taken at the predicted
-/// acceleration, not the measured one: no errors-in-variables bias, and saturation cannot wind it up.
+/// Kalman filter on theta from the torque actually applied (ALGORITHM: step 1). The regressor is taken at the
+/// predicted acceleration, not the measured one: no errors-in-variables bias, and saturation cannot wind it
+/// up.
 class ParameterFilter {
  public:
   ParameterFilter(const AdaptationConfig& config, const PlanarArm& arm);

@@ -25,7 +25,8 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
 JointVector ArmController::Step(const ArmInput& in) {
   const double h = config_.timing.period_s;
   const double elapsed_s = started_ ? in.sample_s - previous_sample_s_ : h;
-  if (started_ && in.tick_s - zeta_time_s_ > 0.5 * h) estimator_.Coast(in.tick_s - zeta_time_s_);  // ticks were missed
+  if (started_ && in.tick_s - zeta_time_s_ > 0.5 * h)
+    estimator_.Coast(in.tick_s - zeta_time_s_);  // ticks were missed
   started_ = true;
   previous_sample_s_ = in.sample_s;
 
@@ -47,7 +48,8 @@ JointVector ArmController::Step(const ArmInput& in) {
 
   // Limits and gate come last.
   const JointVector sent = gate_.Update(wanted);
-  if (auto* robust = std::get_if<RobustLaw>(&law_); robust != nullptr && !gate_.shut()) robust->Applied(wanted, sent);
+  if (auto* robust = std::get_if<RobustLaw>(&law_); robust != nullptr && !gate_.shut())
+    robust->Applied(wanted, sent);
 
   status_.state = gate_.shut() ? ControllerState::kFault : ControllerState::kRun;
   status_.tau_Nm = sent;
@@ -65,7 +67,8 @@ void ArmController::Observe(const ArmInput& in, const Zeta& zeta) {
   status_.sigma_min = inverse.sigma_min;
   status_.manipulability = inverse.determinant_JJt;
   if (arm_.dof() > PlanarArm::kTaskDim) {
-    const JointVector difference = in.dq_rad_s - SubtaskVelocity(config_.control.subtask, arm_, in.q_rad, at, J);
+    const JointVector difference =
+        in.dq_rad_s - SubtaskVelocity(config_.control.subtask, arm_, in.q_rad, at, J);
     status_.subtask_error_rad_s = (difference - inverse.J_sharp * (J * difference)).norm();
   }
 }

@@ -19,11 +19,15 @@ struct TimingConfig {
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"period_s", "s", 1e-4, 1, "control period h"}, period_s);
-    parameter({"sample_to_torque_s", "s", 0, 1, "delay from the joint sample to the torque's effect, which the law compensates; below the period"},
-              sample_to_torque_s);
-    parameter({"feedback_timeout_s", "s", 1e-5, 1, "time a tick waits for the joints' samples; a missing one is then predicted"},
+    parameter(
+        {"sample_to_torque_s", "s", 0, 1,
+         "delay from the joint sample to the torque's effect, which the law compensates; below the period"},
+        sample_to_torque_s);
+    parameter({"feedback_timeout_s", "s", 1e-5, 1,
+               "time a tick waits for the joints' samples; a missing one is then predicted"},
               feedback_timeout_s);
-    parameter({"feedback_stale_s", "s", 1e-4, 1, "age of a joint's sample at which the arm is disabled"}, feedback_stale_s);
+    parameter({"feedback_stale_s", "s", 1e-4, 1, "age of a joint's sample at which the arm is disabled"},
+              feedback_stale_s);
   }
 };
 
@@ -41,7 +45,8 @@ struct ArmInitialState {
   ParameterVector theta_hat;
 };
 
-/// What one tick sees. `tick_s` lies on the period's grid; the sample was taken at `sample_s`, at or after it.
+/// What one tick sees. `tick_s` lies on the period's grid; the sample was taken at `sample_s`, at or after
+/// it.
 struct ArmInput {
   double tick_s = 0.0;
   double sample_s = 0.0;
@@ -54,9 +59,12 @@ enum class ControllerState : int { kInit = 0, kRun = 1, kFault = 2 };
 
 constexpr const char* NameOf(ControllerState state) {
   switch (state) {
-    case ControllerState::kInit: return "INIT";
-    case ControllerState::kRun: return "RUN";
-    case ControllerState::kFault: break;
+    case ControllerState::kInit:
+      return "INIT";
+    case ControllerState::kRun:
+      return "RUN";
+    case ControllerState::kFault:
+      break;
   }
   return "FAULT";
 }
@@ -78,7 +86,8 @@ class ArmController {
  public:
   ArmController(const ArmControllerConfig& config, const ArmInitialState& initial);
 
-  /// One tick: estimator (1.9), law (1.2) with reference (1.5) and adaptation (1.8), limits, gate. Torque to send, N m.
+  /// One tick: estimator (1.9), law (1.2) with reference (1.5) and adaptation (1.8), limits, gate. Torque to
+  /// send, N m.
   JointVector Step(const ArmInput& in);
 
   /// The state that neighbours may use, valid at `zeta_time_s()` on the clock of ArmInput.

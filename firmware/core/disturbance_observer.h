@@ -10,7 +10,9 @@ struct DisturbanceObserverConfig {
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
-    parameter({"gain", "1/tick", 0, 1, "share of the torque residual taken into d_hat each tick; 0: no observer"}, gain);
+    parameter(
+        {"gain", "1/tick", 0, 1, "share of the torque residual taken into d_hat each tick; 0: no observer"},
+        gain);
     parameter({"bound_Nm", "N m", 0, 1e5, "largest disturbance that d_hat may claim, per joint"}, bound_Nm);
   }
 };

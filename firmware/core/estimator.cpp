@@ -6,7 +6,9 @@
 namespace armada {
 namespace {
 
-double Sign(double value) { return static_cast<double>((value > 0.0) - (value < 0.0)); }
+double Sign(double value) {
+  return static_cast<double>((value > 0.0) - (value < 0.0));
+}
 
 // One block (x, v or a) of (1.9), explicit: a step of h beta against the sign of the disagreement.
 void ExplicitStep(const TaskVector& mean, double h_beta, TaskVector& state, bool& in_band) {
@@ -18,8 +20,10 @@ void ExplicitStep(const TaskVector& mean, double h_beta, TaskVector& state, bool
   }
 }
 
-// The same with the sgn evaluated at the end of the step, solved in closed form: f moves to the mean, or by h beta.
-void ImplicitStep(const TaskVector& f, const TaskVector& mean, double h_beta, TaskVector& state, bool& in_band) {
+// The same with the sgn evaluated at the end of the step, solved in closed form: f moves to the mean, or by h
+// beta.
+void ImplicitStep(const TaskVector& f, const TaskVector& mean, double h_beta, TaskVector& state,
+                  bool& in_band) {
   for (Eigen::Index c = 0; c < state.size(); ++c) {
     const double distance = f[c] - mean[c];
     const double beyond = std::abs(distance) - h_beta;
@@ -44,8 +48,8 @@ void Estimator::Update(const Neighbours& neighbours, double h_s) {
   const Eigen::Index m = zeta_.x_m.size();
   const Zeta f = predict ? Taylor(zeta_, h_s) : zeta_;
 
-  // Weighted mean of what was heard. Without a leader a node is one of its own neighbours: averaging over the others
-  // alone only passes values around a ring.
+  // Weighted mean of what was heard. Without a leader a node is one of its own neighbours: averaging over the
+  // others alone only passes values around a ring.
   Zeta mean = config_.leaderless ? f : Zeta::Zero(m);
   double degree = config_.leaderless ? 1.0 : 0.0;
   for (int j = 0; j < neighbours.count; ++j) {

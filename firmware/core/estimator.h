@@ -24,15 +24,19 @@ struct EstimatorConfig {
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"kind", "", 0, 0, "estimator (1.9): paper (explicit Euler), implicit, predictive"}, kind);
-    parameter({"beta_1_m_s", "m/s", 1e-6, 1e3, "beta_1 of (1.9), above the leader's speed per axis"}, beta_1_m_s);
-    parameter({"beta_2_m_s2", "m/s^2", 1e-6, 1e4, "beta_2 of (1.9), above the leader's acceleration per axis"},
-              beta_2_m_s2);
-    parameter({"beta_3_m_s3", "m/s^3", 1e-6, 1e5, "beta_3 of (1.9), above the leader's jerk per axis"}, beta_3_m_s3);
+    parameter({"beta_1_m_s", "m/s", 1e-6, 1e3, "beta_1 of (1.9), above the leader's speed per axis"},
+              beta_1_m_s);
+    parameter(
+        {"beta_2_m_s2", "m/s^2", 1e-6, 1e4, "beta_2 of (1.9), above the leader's acceleration per axis"},
+        beta_2_m_s2);
+    parameter({"beta_3_m_s3", "m/s^3", 1e-6, 1e5, "beta_3 of (1.9), above the leader's jerk per axis"},
+              beta_3_m_s3);
     parameter({"sync_ticks", "ticks", 1, 1000,
                "ticks of agreement, here and upstream, after which the estimate is used for motion"},
               sync_ticks);
-    parameter({"desync_ticks", "ticks", 1, 10000, "consecutive ticks out of the band after which it no longer is"},
-              desync_ticks);
+    parameter(
+        {"desync_ticks", "ticks", 1, 10000, "consecutive ticks out of the band after which it no longer is"},
+        desync_ticks);
     parameter({"leaderless", "", 0, 1,
                "Corollary 2: no leader; the arms agree on a point (v = a = 0) and meet there"},
               leaderless);
@@ -53,7 +57,8 @@ struct Neighbours {
   int count = 0;
 };
 
-/// The networked algorithm (1.9) of one arm in discrete time. Per component c with m = sum_j w_j z_j / sum_j w_j:
+/// The networked algorithm (1.9) of one arm in discrete time. Per component c with m = sum_j w_j z_j / sum_j
+/// w_j:
 ///   paper       zeta+ = zeta - h beta_c sgn(sum_j w_j (zeta - z_j))
 ///   implicit    zeta+ = m + sgn(f - m) max(0, |f - m| - h beta_c), f = zeta
 ///   predictive  the same with f = Taylor(zeta, h) and z_j predicted to the end of the tick.

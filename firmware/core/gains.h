@@ -12,11 +12,14 @@ struct GainsConfig {
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
-    parameter({"K_s_Nms_rad", "N m s/rad", 1e-6, 1e6, "K_s of (1.2), joint damping on s; one value or one a joint"},
-              K_s_Nms_rad);
-    parameter({"K_x_Ns_m", "N s/m", 0, 1e6, "K_x of (1.2), task-space damping on J s; one value or one an axis"},
-              K_x_Ns_m);
-    parameter({"K_r_Nm", "N m", 0, 1e6, "K_r of (1.2), at least the 2-norm of the disturbance; one value or one a joint"},
+    parameter(
+        {"K_s_Nms_rad", "N m s/rad", 1e-6, 1e6, "K_s of (1.2), joint damping on s; one value or one a joint"},
+        K_s_Nms_rad);
+    parameter(
+        {"K_x_Ns_m", "N s/m", 0, 1e6, "K_x of (1.2), task-space damping on J s; one value or one an axis"},
+        K_x_Ns_m);
+    parameter({"K_r_Nm", "N m", 0, 1e6,
+               "K_r of (1.2), at least the 2-norm of the disturbance; one value or one a joint"},
               K_r_Nm);
   }
 

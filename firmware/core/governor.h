@@ -10,13 +10,17 @@ struct GovernorConfig {
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
-    parameter({"acceleration_rad_s2", "rad/s^2", 1e-2, 1e5, "slew of the governed reference velocity, largest joint"}, acceleration_rad_s2);
-    parameter({"speed_rad_s", "rad/s", 1e-2, 1e3, "bound on the governed reference velocity after anti-windup"}, speed_rad_s);
+    parameter({"acceleration_rad_s2", "rad/s^2", 1e-2, 1e5,
+               "slew of the governed reference velocity, largest joint"},
+              acceleration_rad_s2);
+    parameter(
+        {"speed_rad_s", "rad/s", 1e-2, 1e3, "bound on the governed reference velocity after anti-windup"},
+        speed_rad_s);
   }
 };
 
-/// Governed reference velocity dq_g: follows the target dq_r(q+, zeta+) of the tick's end at a bounded slew. Its exact
-/// difference over the tick replaces the derivative (1.6).
+/// Governed reference velocity dq_g: follows the target dq_r(q+, zeta+) of the tick's end at a bounded slew.
+/// Its exact difference over the tick replaces the derivative (1.6).
 class Governor {
  public:
   Governor(const GovernorConfig& config, const JointVector& dq) : config_(config), start_(dq), end_(dq) {}

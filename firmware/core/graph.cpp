@@ -24,7 +24,8 @@ void Digraph::Spread(std::array<int, kMaxArms>& depth) const {
       for (int j = 0; j < node_count_; ++j) {
         const int of_j = depth[static_cast<size_t>(j)];
         int& of_i = next[static_cast<size_t>(i)];
-        if (weight(i, j) > 0.0 && of_j != kUnreachable && (of_i == kUnreachable || of_j + 1 < of_i)) of_i = of_j + 1;
+        if (weight(i, j) > 0.0 && of_j != kUnreachable && (of_i == kUnreachable || of_j + 1 < of_i))
+          of_i = of_j + 1;
       }
     }
     if (next == depth) return;
@@ -58,7 +59,8 @@ bool Digraph::LeaderReachesAll() const {
 bool Digraph::HasSpanningTree() const {
   for (int root = 0; root < node_count_; ++root) {
     const auto depth = DepthFromNode(root);
-    if (std::none_of(depth.begin(), depth.begin() + node_count_, [](int d) { return d == kUnreachable; })) return true;
+    if (std::none_of(depth.begin(), depth.begin() + node_count_, [](int d) { return d == kUnreachable; }))
+      return true;
   }
   return false;
 }

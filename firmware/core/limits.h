@@ -4,8 +4,8 @@
 
 namespace armada {
 
-/// Every torque command passes here last: limited joint by joint, then checked. A command that is not finite is never
-/// sent; the gate then gives zero torque and stays shut until the controller is started anew.
+/// Every torque command passes here last: limited joint by joint, then checked. A command that is not finite
+/// is never sent; the gate then gives zero torque and stays shut until the controller is started anew.
 class TorqueGate {
  public:
   explicit TorqueGate(const JointVector& torque_limit_Nm) : limit_Nm_(torque_limit_Nm) {}

@@ -23,7 +23,7 @@ JointVector PaperLaw::Torque(const LawInput& in) {
 
   const double alpha = config_.paper.alpha_1_s;
   const TaskVector r = in.zeta.v_m_s - alpha * (x - in.zeta.x_m);
-  JointVector dq_r = J_sharp * r;                                                               // (1.5)
+  JointVector dq_r = J_sharp * r;                                                                // (1.5)
   JointVector ddq_r = dJ_sharp * r + J_sharp * (in.zeta.a_m_s2 - alpha * (dx - in.zeta.v_m_s));  // (1.6)
   if (arm_.dof() > PlanarArm::kTaskDim && config_.subtask.kind != SubtaskKind::kNone) {
     const auto phi_at = [&](const JointVector& q_at) {

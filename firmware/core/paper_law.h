@@ -4,8 +4,9 @@
 
 namespace armada {
 
-/// The local law as printed: (1.2) with (1.5), (1.6) and (1.8), explicit Euler, undamped J#, sgn. Kept for comparison
-/// and teaching; docs/equations.md says where it fails on a sampled arm. Its torque may be non-finite at a singularity.
+/// The local law as printed: (1.2) with (1.5), (1.6) and (1.8), explicit Euler, undamped J#, sgn. Kept for
+/// comparison and teaching; docs/equations.md says where it fails on a sampled arm. Its torque may be
+/// non-finite at a singularity.
 class PaperLaw {
  public:
   PaperLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat)

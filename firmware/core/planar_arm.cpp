@@ -113,7 +113,8 @@ ParameterVector PlanarArm::Theta() const {
   for (int a = 0; a < dof(); ++a) {
     for (int b = a; b < dof(); ++b) {
       double D_ab = a == b ? config_.links[static_cast<size_t>(a)].I_kgm2 : 0.0;
-      for (int k = b; k < dof(); ++k) D_ab += config_.links[static_cast<size_t>(k)].m_kg * lever(k, a) * lever(k, b);
+      for (int k = b; k < dof(); ++k)
+        D_ab += config_.links[static_cast<size_t>(k)].m_kg * lever(k, a) * lever(k, b);
       theta[InertiaIndex(a, b)] = D_ab;
     }
     if (parameter_count_ > InertiaParameterCount()) {
@@ -141,7 +142,8 @@ RegressorMatrix PlanarArm::Regressor(const Posture& at, const JointVector& dq, c
       Y(b, column) = c * Tx[a] - s * W[a] * Ty[a];
     }
   }
-  for (int a = 0; column < parameter_count_; ++a, ++column) Y(a, column) = config_.gravity_m_s2 * at.cosine[a];
+  for (int a = 0; column < parameter_count_; ++a, ++column)
+    Y(a, column) = config_.gravity_m_s2 * at.cosine[a];
   ApplyTransposedSum(Y);
   return Y;
 }
@@ -157,7 +159,8 @@ JointMatrix PlanarArm::Inertia(const Posture& at, const ParameterVector& theta) 
   return H;
 }
 
-JointMatrix PlanarArm::Coriolis(const Posture& at, const JointVector& dq, const ParameterVector& theta) const {
+JointMatrix PlanarArm::Coriolis(const Posture& at, const JointVector& dq,
+                                const ParameterVector& theta) const {
   const JointVector W = Accumulate(dq);
   JointMatrix C = JointMatrix::Zero(dof(), dof());
   int index = 0;

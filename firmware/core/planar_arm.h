@@ -8,16 +8,17 @@ namespace armada {
 
 /// One link of a planar arm: the columns of the paper's Table 1.
 struct LinkConfig {
-  double m_kg = 1.0;     ///< mass
-  double l_m = 1.0;      ///< length
-  double r_m = 0.5;      ///< distance of the centre of mass from the link's joint, in (0, l]
-  double I_kgm2 = 0.1;   ///< moment of inertia about the centre of mass
+  double m_kg = 1.0;    ///< mass
+  double l_m = 1.0;     ///< length
+  double r_m = 0.5;     ///< distance of the centre of mass from the link's joint, in (0, l]
+  double I_kgm2 = 0.1;  ///< moment of inertia about the centre of mass
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"m_kg", "kg", 1e-6, 1e4, "mass of the link"}, m_kg);
     parameter({"l_m", "m", 1e-3, 100, "length of the link"}, l_m);
-    parameter({"r_m", "m", 1e-6, 100, "distance from the link's joint to its centre of mass, at most l_m"}, r_m);
+    parameter({"r_m", "m", 1e-6, 100, "distance from the link's joint to its centre of mass, at most l_m"},
+              r_m);
     parameter({"I_kgm2", "kg m^2", 1e-9, 1e4, "moment of inertia about the centre of mass"}, I_kgm2);
   }
 };
@@ -28,28 +29,31 @@ struct PlanarArmConfig {
   double base_x_m = 0.0;  ///< base in the fleet's world frame
   double base_y_m = 0.0;
   double base_orientation_rad = 0.0;  ///< angle of the first link at q_1 = 0
-  double gravity_m_s2 = 0.0;          ///< along -y of the world; 0 for an arm that moves in a horizontal plane
+  double gravity_m_s2 = 0.0;  ///< along -y of the world; 0 for an arm that moves in a horizontal plane
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"base_x_m", "m", -1e3, 1e3, "x of the arm's base in the world frame"}, base_x_m);
     parameter({"base_y_m", "m", -1e3, 1e3, "y of the arm's base in the world frame"}, base_y_m);
-    parameter({"base_orientation_rad", "rad", -7, 7, "angle of the first link at q_1 = 0, from the world's x axis"},
-              base_orientation_rad);
-    parameter({"gravity_m_s2", "m/s^2", 0, 30, "gravity along -y of the world; 0 for an arm in a horizontal plane"},
-              gravity_m_s2);
+    parameter(
+        {"base_orientation_rad", "rad", -7, 7, "angle of the first link at q_1 = 0, from the world's x axis"},
+        base_orientation_rad);
+    parameter(
+        {"gravity_m_s2", "m/s^2", 0, 30, "gravity along -y of the world; 0 for an arm in a horizontal plane"},
+        gravity_m_s2);
   }
 };
 
-/// Planar arm with 1 to 7 revolute joints, task dimension m = 2: kinematics and the linear-in-parameters dynamics
-/// of (1.1), (P1)-(P3).
+/// Planar arm with 1 to 7 revolute joints, task dimension m = 2: kinematics and the linear-in-parameters
+/// dynamics of (1.1), (P1)-(P3).
 ///
 /// With the absolute link angles th = base + T q (T lower triangular of ones) and W = T dq,
 ///   H(q)      = T' [D_ab cos(th_a - th_b)] T,
-///   C(q,dq) y = T' [sum_b D_ab sin(th_a - th_b) W_b (T y)_b],     (Christoffel: dH/dt - 2C is skew symmetric)
-///   g(q)      = T' [g0 G_a cos th_a],
-/// where D_ab = sum_k m_k c_ka c_kb + delta_ab I_a, G_a = sum_k m_k c_ka, c_ka = l_a for a < k, r_k for a = k.
-/// theta = (D_11, D_12, .., D_1n, D_22, .., D_nn [, G_1, .., G_n when gravity_m_s2 != 0]), kg m^2 and kg m.
+///   C(q,dq) y = T' [sum_b D_ab sin(th_a - th_b) W_b (T y)_b],     (Christoffel: dH/dt - 2C is skew
+///   symmetric) g(q)      = T' [g0 G_a cos th_a],
+/// where D_ab = sum_k m_k c_ka c_kb + delta_ab I_a, G_a = sum_k m_k c_ka, c_ka = l_a for a < k, r_k for a =
+/// k. theta = (D_11, D_12, .., D_1n, D_22, .., D_nn [, G_1, .., G_n when gravity_m_s2 != 0]), kg m^2 and kg
+/// m.
 class PlanarArm {
  public:
   static constexpr int kTaskDim = 2;

@@ -21,7 +21,8 @@ Pseudoinverse Compute(const PseudoinverseConfig& config, const JacobianMatrix& J
     const double ratio = std::sqrt(sigma_squared) / config.sigma_threshold_m;
     const double l_squared =
         ratio < 1.0 ? config.damping_max_m * config.damping_max_m * (1.0 - ratio * ratio) : 0.0;
-    inverse += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / (sigma_squared + l_squared);
+    inverse +=
+        eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / (sigma_squared + l_squared);
   }
   result.sigma_min = std::sqrt(std::max(eigen.eigenvalues()[0], 0.0));
   result.determinant_JJt = JJt.determinant();
@@ -33,9 +34,12 @@ Pseudoinverse Compute(const PseudoinverseConfig& config, const JacobianMatrix& J
 
 Pseudoinverse DampedPseudoinverse(const PseudoinverseConfig& config, const JacobianMatrix& J) {
   switch (J.rows()) {
-    case 1: return Compute<1>(config, J);
-    case 2: return Compute<2>(config, J);
-    default: return Compute<3>(config, J);
+    case 1:
+      return Compute<1>(config, J);
+    case 2:
+      return Compute<2>(config, J);
+    default:
+      return Compute<3>(config, J);
   }
 }
 

@@ -2,7 +2,8 @@
 
 namespace armada {
 
-JointVector ManipulabilityGradient(const PlanarArm& arm, const PlanarArm::Posture& at, const JacobianMatrix& J) {
+JointVector ManipulabilityGradient(const PlanarArm& arm, const PlanarArm::Posture& at,
+                                   const JacobianMatrix& J) {
   const Eigen::Matrix2d JJt = J.lazyProduct(J.transpose());
   Eigen::Matrix2d adjugate;
   adjugate << JJt(1, 1), -JJt(0, 1), -JJt(1, 0), JJt(0, 0);
@@ -19,9 +20,14 @@ JointVector SubtaskVelocity(const SubtaskConfig& config, const PlanarArm& arm, c
                             const PlanarArm::Posture& at, const JacobianMatrix& J) {
   JointVector phi = JointVector::Zero(arm.dof());
   switch (config.kind) {
-    case SubtaskKind::kNone: return phi;
-    case SubtaskKind::kPosture: phi[config.joint - 1] = config.gain * (config.goal_rad - q[config.joint - 1]); break;
-    case SubtaskKind::kManipulability: phi = config.gain * ManipulabilityGradient(arm, at, J); break;
+    case SubtaskKind::kNone:
+      return phi;
+    case SubtaskKind::kPosture:
+      phi[config.joint - 1] = config.gain * (config.goal_rad - q[config.joint - 1]);
+      break;
+    case SubtaskKind::kManipulability:
+      phi = config.gain * ManipulabilityGradient(arm, at, J);
+      break;
   }
   const double largest = phi.cwiseAbs().maxCoeff();
   if (config.phi_max_rad_s > 0.0 && largest > config.phi_max_rad_s) phi *= config.phi_max_rad_s / largest;

@@ -4,12 +4,13 @@
 
 namespace armada {
 
-/// Compile-time maxima. Storage is fixed and lives inside the objects; sizes are set at run time, so that one binary
-/// serves every arm without a heap.
+/// Compile-time maxima. Storage is fixed and lives inside the objects; sizes are set at run time, so that one
+/// binary serves every arm without a heap.
 inline constexpr int kMaxDof = 7;
 inline constexpr int kMaxTaskDim = 3;
-inline constexpr int kMaxParameters = kMaxDof * (kMaxDof + 1) / 2 + kMaxDof;  // inertia products, gravity moments
-inline constexpr int kMaxNeighbours = 16;                                     // in-edges of one node, leader included
+inline constexpr int kMaxParameters =
+    kMaxDof * (kMaxDof + 1) / 2 + kMaxDof;  // inertia products, gravity moments
+inline constexpr int kMaxNeighbours = 16;   // in-edges of one node, leader included
 inline constexpr int kMaxArms = 64;
 
 template <int kMaxRows>
@@ -18,13 +19,13 @@ template <int kMaxRows, int kMaxCols>
 using BoundedMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxCols>;
 
-using JointVector = BoundedVector<kMaxDof>;                     ///< p: q, dq, tau, s
-using TaskVector = BoundedVector<kMaxTaskDim>;                  ///< m: x, v, a
-using ParameterVector = BoundedVector<kMaxParameters>;          ///< theta
-using JointMatrix = BoundedMatrix<kMaxDof, kMaxDof>;            ///< p x p: H, C
-using JacobianMatrix = BoundedMatrix<kMaxTaskDim, kMaxDof>;     ///< m x p: J
-using InverseMatrix = BoundedMatrix<kMaxDof, kMaxTaskDim>;      ///< p x m: J#
-using TaskMatrix = BoundedMatrix<kMaxTaskDim, kMaxTaskDim>;     ///< m x m: K_x
+using JointVector = BoundedVector<kMaxDof>;                      ///< p: q, dq, tau, s
+using TaskVector = BoundedVector<kMaxTaskDim>;                   ///< m: x, v, a
+using ParameterVector = BoundedVector<kMaxParameters>;           ///< theta
+using JointMatrix = BoundedMatrix<kMaxDof, kMaxDof>;             ///< p x p: H, C
+using JacobianMatrix = BoundedMatrix<kMaxTaskDim, kMaxDof>;      ///< m x p: J
+using InverseMatrix = BoundedMatrix<kMaxDof, kMaxTaskDim>;       ///< p x m: J#
+using TaskMatrix = BoundedMatrix<kMaxTaskDim, kMaxTaskDim>;      ///< m x m: K_x
 using RegressorMatrix = BoundedMatrix<kMaxDof, kMaxParameters>;  ///< p x theta: Y
 using ParameterMatrix = BoundedMatrix<kMaxParameters, kMaxParameters>;
 

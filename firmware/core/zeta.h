@@ -4,7 +4,8 @@
 
 namespace armada {
 
-/// zeta = col(x, v, a) of (0.9): a state of the leader, or an estimate of it, in the world frame; m components each.
+/// zeta = col(x, v, a) of (0.9): a state of the leader, or an estimate of it, in the world frame; m
+/// components each.
 struct Zeta {
   TaskVector x_m;
   TaskVector v_m_s;

@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-constexpr int64_t kStartUpNs = 2'000'000'000;   // processes, sockets and drives are up well before
-constexpr double kOverrun_s = 5.0;              // a program that has not ended by then is stuck
+constexpr int64_t kStartUpNs = 2'000'000'000;  // processes, sockets and drives are up well before
+constexpr double kOverrun_s = 5.0;             // a program that has not ended by then is stuck
 
 int Fail(const std::string& message) {
   std::cerr << "armada run: " << message << '\n';
@@ -50,7 +50,9 @@ class Run {
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
   void ShowProgress();
-  std::string Program(const char* name) const { return (fs::path(options_.program_directory) / name).string(); }
+  std::string Program(const char* name) const {
+    return (fs::path(options_.program_directory) / name).string();
+  }
   std::string In(const std::string& name) const { return (out_ / name).string(); }
   std::string Seconds() const { return std::to_string(scenario_.seconds); }
 
@@ -71,7 +73,8 @@ bool Run::WriteInputs(std::string* error) {
     return false;
   }
   // What an earlier run left must not pass for a result of this one.
-  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "lcm.log"}) fs::remove(out_ / name, code);
+  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "lcm.log"})
+    fs::remove(out_ / name, code);
   for (const char* name : {"report", "without_subtask"}) fs::remove_all(out_ / name, code);
 
   if (!WriteEffective(scenario_, out_.string(), error)) return false;
@@ -96,7 +99,8 @@ bool Run::Prepare(std::string* error) {
   return link_ != nullptr && WriteInputs(error);
 }
 
-bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error) {
+bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv,
+                std::string* error) {
   std::string log_name = name;
   for (char& c : log_name) c = c == ' ' ? '_' : c;
   return group->Start({name, std::move(argv), {}, In(log_name + ".txt")}, error);
@@ -107,26 +111,29 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
   recorder_ = std::make_unique<RunRecorder>(scenario_, epoch_ns_);
   const std::string epoch = std::to_string(epoch_ns_);
   if (!Start(group, "lcm-logger",
-             {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url, In("lcm.log")}, error)) {
+             {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url,
+              In("lcm.log")},
+             error)) {
     return false;
   }
   if (!Start(group, "hil",
-             {Program("armada-hil"), In("scenario.toml"), "--seed", std::to_string(options_.seed), "--epoch-ns", epoch,
-              "--seconds", Seconds(), "--out", out_.string()},
+             {Program("armada-hil"), In("scenario.toml"), "--seed", std::to_string(options_.seed),
+              "--epoch-ns", epoch, "--seconds", Seconds(), "--out", out_.string()},
              error)) {
     return false;
   }
   for (const ArmEntry& arm : scenario_.fleet.arms) {
     const std::string id = std::to_string(arm.id);
     if (!Start(group, "arm " + id,
-               {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds", Seconds(), "--initial",
-                In("initial_" + id + ".toml"), "--json", In("arm_" + id + ".json")},
+               {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds",
+                Seconds(), "--initial", In("initial_" + id + ".toml"), "--json", In("arm_" + id + ".json")},
                error)) {
       return false;
     }
   }
   return scenario_.leader.kind == LeaderKind::kNone ||
-         Start(group, "leader", {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds()},
+         Start(group, "leader",
+               {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds()},
                error);
 }
 
@@ -145,8 +152,9 @@ void Run::ShowProgress() {
   if (t_s < 0.0) {
     std::printf("starting: %.1f s to go", -t_s);
   } else {
-    std::printf("t %5.1f of %g s, %zu of %zu arms, largest |x - x_hat| %8.2f mm, missed ticks %lld", t_s, scenario_.seconds,
-                heard, scenario_.fleet.arms.size(), worst_m * 1e3, static_cast<long long>(missed));
+    std::printf("t %5.1f of %g s, %zu of %zu arms, largest |x - x_hat| %8.2f mm, missed ticks %lld", t_s,
+                scenario_.seconds, heard, scenario_.fleet.arms.size(), worst_m * 1e3,
+                static_cast<long long>(missed));
   }
   std::fputs(isatty(STDOUT_FILENO) != 0 ? "  \r" : "\n", stdout);
   std::fflush(stdout);
@@ -199,7 +207,8 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
     return false;
   }
   if (!recorder_->WriteTraces(out_.string(), error)) return false;
-  if (!CollectRunResult(scenario_, options_.seed, *recorder_, out_.string(), metrics, json, error)) return false;
+  if (!CollectRunResult(scenario_, options_.seed, *recorder_, out_.string(), metrics, json, error))
+    return false;
   if (!WriteJson(*json, In("metrics.json"), error)) return false;
   return options_.json.empty() || WriteJson(*json, options_.json, error);
 }
@@ -210,11 +219,12 @@ int RunRunCommand(const RunOptions& options) {
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
   if (options.bus != "udp") {
-    std::cerr << "armada run: --bus " << options.bus << ": this version runs on \"udp\", the user-space bus\n";
+    std::cerr << "armada run: --bus " << options.bus
+              << ": this version runs on \"udp\", the user-space bus\n";
     return kExitUsage;
   }
-  std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds << " s, seed "
-            << options.seed << ", into " << options.out << std::endl;
+  std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
+            << " s, seed " << options.seed << ", into " << options.out << std::endl;
   Run run(options, *scenario);
   std::string error;
   RunMetrics metrics;

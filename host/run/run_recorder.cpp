@@ -14,7 +14,9 @@ namespace {
 
 constexpr int64_t kNever = -1;
 
-TaskVector ToTask(const double (&from)[3]) { return Eigen::Map<const Eigen::Vector3d>(from).head(PlanarArm::kTaskDim); }
+TaskVector ToTask(const double (&from)[3]) {
+  return Eigen::Map<const Eigen::Vector3d>(from).head(PlanarArm::kTaskDim);
+}
 
 JointVector ToJoints(const double (&from)[7], int dof) {
   return Eigen::Map<const Eigen::Matrix<double, 7, 1>>(from).head(dof);
@@ -41,7 +43,9 @@ RunRecorder::RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns)
 }
 
 void RunRecorder::OnMessage(const LcmMessage& message) {
-  const auto index_of = [&](std::optional<int> arm_id) { return arm_id ? scenario_.fleet.IndexOf(*arm_id) : -1; };
+  const auto index_of = [&](std::optional<int> arm_id) {
+    return arm_id ? scenario_.fleet.IndexOf(*arm_id) : -1;
+  };
   if (const int i = index_of(ParseArmChannel(kTelemetryPrefix, message.channel)); i >= 0) {
     telemetry_t telemetry;
     if (!Decode(message.payload, &telemetry)) return;
@@ -100,16 +104,19 @@ ArmMetrics RunRecorder::Metrics(size_t index) const {
     squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
     ++estimates;
   }
-  metrics.estimator_rms = {Rms(squares.x_m, estimates), Rms(squares.v_m_s, estimates), Rms(squares.a_m_s2, estimates)};
+  metrics.estimator_rms = {Rms(squares.x_m, estimates), Rms(squares.v_m_s, estimates),
+                           Rms(squares.a_m_s2, estimates)};
 
   double subtask_squares = 0.0;
   double posture_squares = 0.0;
   size_t ticks = 0;
   for (const telemetry_t& tick : record.telemetry) {
-    for (const double tau_Nm : tick.tau_Nm) metrics.torque_max_Nm = std::max(metrics.torque_max_Nm, std::abs(tau_Nm));
+    for (const double tau_Nm : tick.tau_Nm)
+      metrics.torque_max_Nm = std::max(metrics.torque_max_Nm, std::abs(tau_Nm));
     if (!InWindow(tick.stamp_ns)) continue;
     subtask_squares += tick.subtask_error_rad_s * tick.subtask_error_rad_s;
-    if (subtask.kind == SubtaskKind::kPosture) posture_squares += std::pow(tick.q_rad[subtask.joint - 1] - subtask.goal_rad, 2);
+    if (subtask.kind == SubtaskKind::kPosture)
+      posture_squares += std::pow(tick.q_rad[subtask.joint - 1] - subtask.goal_rad, 2);
     ++ticks;
   }
   if (subtask.kind != SubtaskKind::kNone) metrics.subtask_rms_rad_s = Rms(subtask_squares, ticks);
@@ -117,7 +124,8 @@ ArmMetrics RunRecorder::Metrics(size_t index) const {
   metrics.saturated_ticks = record.latest->saturated_ticks;
   metrics.state = NameOf(static_cast<ControllerState>(record.latest->state));
   const ParameterVector theta = PlanarArm(entry.arm).Theta();
-  const auto theta_hat = Eigen::Map<const Eigen::Matrix<double, kMaxParameters, 1>>(record.latest->theta_hat).head(theta.size());
+  const auto theta_hat =
+      Eigen::Map<const Eigen::Matrix<double, kMaxParameters, 1>>(record.latest->theta_hat).head(theta.size());
   metrics.parameter_error = (theta_hat - theta).norm() / theta.norm();
   return metrics;
 }
@@ -137,9 +145,11 @@ double RunRecorder::EstimateSpread() const {
     if (!InWindow(estimate.stamp_ns)) continue;
     std::vector<TaskVector> points;
     for (const ArmRecord& arm : arms_) {
-      const auto same = std::lower_bound(arm.estimates.begin(), arm.estimates.end(), estimate.stamp_ns,
-                                         [](const estimate_t& e, int64_t at_ns) { return e.stamp_ns < at_ns; });
-      if (same != arm.estimates.end() && same->stamp_ns == estimate.stamp_ns) points.push_back(ToTask(same->x_m));
+      const auto same =
+          std::lower_bound(arm.estimates.begin(), arm.estimates.end(), estimate.stamp_ns,
+                           [](const estimate_t& e, int64_t at_ns) { return e.stamp_ns < at_ns; });
+      if (same != arm.estimates.end() && same->stamp_ns == estimate.stamp_ns)
+        points.push_back(ToTask(same->x_m));
     }
     for (size_t i = 0; i < points.size(); ++i) {
       for (size_t j = 0; j < i; ++j) spread_m = std::max(spread_m, (points[i] - points[j]).norm());
@@ -160,7 +170,8 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
     trace.Leader(static_cast<double>(k) * period_s, leader_->At(static_cast<double>(k) * period_s));
   }
 
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> timing(std::fopen((directory + "/timing.csv").c_str(), "w"), std::fclose);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> timing(
+      std::fopen((directory + "/timing.csv").c_str(), "w"), std::fclose);
   if (!timing) {
     *error = "cannot write " + directory + "/timing.csv";
     return false;
@@ -173,7 +184,8 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
     auto estimate = arms_[i].estimates.begin();
     for (const telemetry_t& tick : arms_[i].telemetry) {
       // The estimate that this tick published: the newest not after its sample.
-      while (estimate != arms_[i].estimates.end() && estimate->stamp_ns <= tick.stamp_ns) estimate_at_ns = (estimate++)->stamp_ns;
+      while (estimate != arms_[i].estimates.end() && estimate->stamp_ns <= tick.stamp_ns)
+        estimate_at_ns = (estimate++)->stamp_ns;
       if (estimate_at_ns == kNever) continue;
       const double t_s = TimeOf(tick.stamp_ns);
       const JointVector q = ToJoints(tick.q_rad, tick.dof);
@@ -193,8 +205,8 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
       row.subtask_error_rad_s = tick.subtask_error_rad_s;
       row.synced = tick.synced != 0;
       trace.Arm(i, row);
-      std::fprintf(timing.get(), "%d,%.6f,%d,%d,%d\n", static_cast<int>(tick.arm_id), t_s, tick.wakeup_lateness_us,
-                   tick.compute_us, tick.sample_to_torque_us);
+      std::fprintf(timing.get(), "%d,%.6f,%d,%d,%d\n", static_cast<int>(tick.arm_id), t_s,
+                   tick.wakeup_lateness_us, tick.compute_us, tick.sample_to_torque_us);
     }
   }
   const bool written = trace.Close() && std::fflush(timing.get()) == 0;

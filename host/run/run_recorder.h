@@ -14,7 +14,8 @@
 
 namespace armada {
 
-/// Listens to a running fleet on LCM and keeps what the report and metrics.json need: what every controller saw and did.
+/// Listens to a running fleet on LCM and keeps what the report and metrics.json need: what every controller
+/// saw and did.
 class RunRecorder {
  public:
   RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns);

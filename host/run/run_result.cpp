@@ -24,7 +24,8 @@ std::optional<Json> ReadJson(const std::string& path, std::string* error) {
   return json;
 }
 
-// The true errors at 1 kHz from the emulation; without a leader it cannot know them, and the boards' own are used.
+// The true errors at 1 kHz from the emulation; without a leader it cannot know them, and the boards' own are
+// used.
 void TakeTracking(const Json& of_arm, const TrackingRecord& seen, ArmMetrics* arm) {
   arm->diverged = of_arm.at("diverged").get<bool>();
   if (of_arm.at("rms_mm").is_null()) {
@@ -57,7 +58,8 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
   std::vector<Json> boards;
   try {
     for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
-      const auto board = ReadJson(directory + "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json", error);
+      const auto board =
+          ReadJson(directory + "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json", error);
       if (!board) return false;
       ArmMetrics arm = recorder.Metrics(i);
       TakeTracking(hil->at("arms").at(i), recorder.Tracking(i), &arm);
@@ -68,7 +70,8 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
     metrics->Judge(scenario.criterion);
     *json = ToJson(*metrics);
     for (size_t i = 0; i < boards.size(); ++i) {
-      for (const char* section : {"timing", "memory", "bus"}) (*json)["arms"][i][section] = boards[i].at(section);
+      for (const char* section : {"timing", "memory", "bus"})
+        (*json)["arms"][i][section] = boards[i].at(section);
     }
     (*json)["hil"] = {{"name", "hil"}, {"timing", hil->at("timing")}, {"memory", hil->at("memory")}};
   } catch (const nlohmann::json::exception& exception) {
@@ -79,14 +82,18 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
 }
 
 void PrintProcessTable(const Json& json, std::ostream& out) {
-  out << "arm  lateness_us: p50    p99      max  compute_us: p50    p99  sample->torque_us: p50    p99  missed  heap  faults\n";
+  out << "arm  lateness_us: p50    p99      max  compute_us: p50    p99  sample->torque_us: p50    p99  "
+         "missed  heap  faults\n";
   for (const Json& arm : json.at("arms")) {
     const Json& timing = arm.at("timing");
     const Json& memory = arm.at("memory");
-    const auto us = [&](const char* what, const char* which) { return timing.at(what).at(which).get<double>(); };
+    const auto us = [&](const char* what, const char* which) {
+      return timing.at(what).at(which).get<double>();
+    };
     const Json& heap = memory.at("heap_allocations");
     char line[200];
-    std::snprintf(line, sizeof line, "%3d  %16.0f  %5.0f  %7.0f  %15.0f  %5.0f  %22.0f  %5.0f  %6lld  %4s  %6lld\n",
+    std::snprintf(line, sizeof line,
+                  "%3d  %16.0f  %5.0f  %7.0f  %15.0f  %5.0f  %22.0f  %5.0f  %6lld  %4s  %6lld\n",
                   arm.at("id").get<int>(), us("wakeup_lateness_us", "p50"), us("wakeup_lateness_us", "p99"),
                   us("wakeup_lateness_us", "max"), us("compute_us", "p50"), us("compute_us", "p99"),
                   us("sample_to_torque_us", "p50"), us("sample_to_torque_us", "p99"),

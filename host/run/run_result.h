@@ -9,10 +9,12 @@
 
 namespace armada {
 
-/// Joins what the emulation measured (hil.json: true errors), what the boards measured (arm_<id>.json: timing, memory, bus)
-/// and what was heard on LCM into the result of a run. False with *error naming the file that is missing or broken.
+/// Joins what the emulation measured (hil.json: true errors), what the boards measured (arm_<id>.json:
+/// timing, memory, bus) and what was heard on LCM into the result of a run. False with *error naming the file
+/// that is missing or broken.
 bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRecorder& recorder,
-                      const std::string& directory, RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error);
+                      const std::string& directory, RunMetrics* metrics, nlohmann::ordered_json* json,
+                      std::string* error);
 
 /// The boards' timing and memory for people: one line an arm.
 void PrintProcessTable(const nlohmann::ordered_json& json, std::ostream& out);

@@ -10,8 +10,8 @@
 
 namespace armada {
 
-bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory, RunMetrics* metrics,
-                  std::string* error) {
+bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory,
+                  RunMetrics* metrics, std::string* error) {
   TraceWriter trace(directory, scenario.fleet);
   if (!trace.ok()) {
     *error = trace.error();
@@ -22,7 +22,8 @@ bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::stri
     *error = trace.error();
     return false;
   }
-  return WriteEffective(scenario, directory, error) && WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
+  return WriteEffective(scenario, directory, error) &&
+         WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
 }
 
 int RunSimCommand(const SimOptions& options) {

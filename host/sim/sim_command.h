@@ -18,9 +18,9 @@ struct SimOptions {
 /// `armada sim`: one scenario in virtual time. Exit code.
 int RunSimCommand(const SimOptions& options);
 
-/// Runs a scenario into a directory that `armada report` reads: traces, metrics.json and the effective configuration.
-/// False with *error set when a file cannot be written.
-bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory, RunMetrics* metrics,
-                  std::string* error);
+/// Runs a scenario into a directory that `armada report` reads: traces, metrics.json and the effective
+/// configuration. False with *error set when a file cannot be written.
+bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory,
+                  RunMetrics* metrics, std::string* error);
 
 }  // namespace armada

@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kBringUp_s = 0.5;  // five heartbeats of the slowest drive
 
-void Copy(const TaskVector& from, double (&to)[3]) { std::copy(from.data(), from.data() + from.size(), to); }
+void Copy(const TaskVector& from, double (&to)[3]) {
+  std::copy(from.data(), from.data() + from.size(), to);
+}
 
 TaskVector TipPosition(const EmulatedArm& bench) {
   const PlanarPlant::Tip tip = bench.plant().EndEffector();
@@ -130,7 +132,8 @@ void Simulation::Observe(int64_t k) {
   if (t_s < scenario_.window_start_s) return;
   // After Step the estimates are valid at the end of the tick.
   const Zeta truth = leader_ ? leader_->At(TimeOf(k + 1))
-                             : Zeta{Target(t_s), TaskVector::Zero(PlanarArm::kTaskDim), TaskVector::Zero(PlanarArm::kTaskDim)};
+                             : Zeta{Target(t_s), TaskVector::Zero(PlanarArm::kTaskDim),
+                                    TaskVector::Zero(PlanarArm::kTaskDim)};
   for (size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
     const Zeta& zeta = arm.node.controller().zeta();
@@ -138,12 +141,14 @@ void Simulation::Observe(int64_t k) {
     arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
     arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
     for (size_t j = 0; j < i; ++j) {
-      estimate_spread_m_ = std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
+      estimate_spread_m_ =
+          std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
     }
     arm.subtask_squares += std::pow(arm.node.controller().status().subtask_error_rad_s, 2);
     const SubtaskConfig& subtask = scenario_.fleet.arms[i].control.subtask;
     if (subtask.kind == SubtaskKind::kPosture) {
-      arm.posture_squares += std::pow(arm.bench.plant().q_rad[static_cast<size_t>(subtask.joint - 1)] - subtask.goal_rad, 2);
+      arm.posture_squares +=
+          std::pow(arm.bench.plant().q_rad[static_cast<size_t>(subtask.joint - 1)] - subtask.goal_rad, 2);
     }
     ++arm.window_ticks;
   }
@@ -216,8 +221,10 @@ RunMetrics Simulation::Result() const {
     result.torque_max_Nm = arm.torque_max_Nm;
     result.saturated_ticks = arm.node.controller().saturated_ticks();
     result.parameter_error = (arm.node.controller().theta_hat() - arm.theta).norm() / arm.theta.norm();
-    if (result.subtask != SubtaskKind::kNone) result.subtask_rms_rad_s = Rms(arm.subtask_squares, arm.window_ticks);
-    if (result.subtask == SubtaskKind::kPosture) result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
+    if (result.subtask != SubtaskKind::kNone)
+      result.subtask_rms_rad_s = Rms(arm.subtask_squares, arm.window_ticks);
+    if (result.subtask == SubtaskKind::kPosture)
+      result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
     result.state = NameOf(arm.node.state());
     metrics.arms.push_back(std::move(result));
   }

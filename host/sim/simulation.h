@@ -12,8 +12,8 @@
 
 namespace armada {
 
-/// A scenario in virtual time and in one thread: every arm's whole ArmNode with its drive and message codecs, its emulated
-/// bench, and the network between. The same scenario and seed give the same bytes.
+/// A scenario in virtual time and in one thread: every arm's whole ArmNode with its drive and message codecs,
+/// its emulated bench, and the network between. The same scenario and seed give the same bytes.
 class Simulation {
  public:
   Simulation(const ScenarioConfig& scenario, uint64_t seed);

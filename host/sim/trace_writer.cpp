@@ -32,7 +32,8 @@ TraceWriter::TraceWriter(const std::string& directory, const FleetConfig& fleet)
     return;
   }
   leader_ = Create(directory + "/leader.csv");
-  for (const ArmEntry& arm : fleet.arms) arms_.push_back(Create(directory + "/arm_" + std::to_string(arm.id) + ".csv"));
+  for (const ArmEntry& arm : fleet.arms)
+    arms_.push_back(Create(directory + "/arm_" + std::to_string(arm.id) + ".csv"));
   if (!ok()) return;
 
   constexpr int m = PlanarArm::kTaskDim;

@@ -23,7 +23,8 @@ struct TraceRow {
   bool synced = false;
 };
 
-/// Writes the CSV files of a run: leader.csv and arm_<id>.csv, one row a tick (docs/metrics.md lists the columns).
+/// Writes the CSV files of a run: leader.csv and arm_<id>.csv, one row a tick (docs/metrics.md lists the
+/// columns).
 class TraceWriter {
  public:
   /// Creates the files in `directory`. On failure ok() is false and error() says why.

@@ -63,8 +63,10 @@ class Runner {
       const double rest_s = share > 0.0 ? elapsed.count() * (1.0 / share - 1.0) : 0.0;
       constexpr int kWidth = 40;
       const int filled = static_cast<int>(share * kWidth);
-      std::fprintf(stderr, "\r[%s%s] %zu/%zu seeds, %zu ok, %.0f s left ", std::string(static_cast<size_t>(filled), '#').c_str(),
-                   std::string(static_cast<size_t>(kWidth - filled), '.').c_str(), done_, seeds_.size(), ok_, rest_s);
+      std::fprintf(stderr, "\r[%s%s] %zu/%zu seeds, %zu ok, %.0f s left ",
+                   std::string(static_cast<size_t>(filled), '#').c_str(),
+                   std::string(static_cast<size_t>(kWidth - filled), '.').c_str(), done_, seeds_.size(), ok_,
+                   rest_s);
     }
     std::fputc('\n', stderr);
   }
@@ -85,15 +87,18 @@ int Usage(const std::string& message) {
 }
 
 void PrintSummary(const SweepSummary& summary) {
-  std::printf("arm  diverged  unsettled  rms_mm: median      95%%    99.9%%  settled_s: median      95%%      max  worst seed\n");
+  std::printf(
+      "arm  diverged  unsettled  rms_mm: median      95%%    99.9%%  settled_s: median      95%%      max  "
+      "worst seed\n");
   for (const SweepArmSummary& arm : summary.arms) {
     std::printf("%3d  %8lld  %9lld  %14.3f  %7.3f  %7.3f  %17.2f  %7.2f  %7.2f  %10llu\n", arm.id,
-                static_cast<long long>(arm.diverged), static_cast<long long>(arm.never_settled), arm.rms_mm.median,
-                arm.rms_mm.p95, arm.rms_mm.p999, arm.settled_s.median, arm.settled_s.p95, arm.settled_s.max,
-                static_cast<unsigned long long>(arm.rms_mm.worst_seed));
+                static_cast<long long>(arm.diverged), static_cast<long long>(arm.never_settled),
+                arm.rms_mm.median, arm.rms_mm.p95, arm.rms_mm.p999, arm.settled_s.median, arm.settled_s.p95,
+                arm.settled_s.max, static_cast<unsigned long long>(arm.rms_mm.worst_seed));
   }
-  std::printf("%lld of %lld fleets ok, fleet RMS %.3f mm, estimator RMS %.3g mm\n", static_cast<long long>(summary.ok_count),
-              static_cast<long long>(summary.count), summary.fleet_rms_mm, summary.estimator_rms_x_m * 1e3);
+  std::printf("%lld of %lld fleets ok, fleet RMS %.3f mm, estimator RMS %.3g mm\n",
+              static_cast<long long>(summary.ok_count), static_cast<long long>(summary.count),
+              summary.fleet_rms_mm, summary.estimator_rms_x_m * 1e3);
   if (!summary.failed_seeds.empty()) {
     std::printf("not ok:");
     for (size_t i = 0; i < summary.failed_seeds.size() && i < 10; ++i) {
@@ -128,10 +133,12 @@ int RunSweepCommand(const SweepOptions& options) {
   if (!scenario) return kExitBadConfig;
   std::vector<uint64_t> seeds;
   for (uint64_t seed = first + shard - 1; seed <= last; seed += shards) seeds.push_back(seed);
-  const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int jobs =
+      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const bool progress = isatty(STDERR_FILENO) != 0;
-  return Finish({scenario->name, options.scenario.Overrides(), Runner(*scenario, std::move(seeds)).Run(jobs, progress)},
-                options.json);
+  return Finish(
+      {scenario->name, options.scenario.Overrides(), Runner(*scenario, std::move(seeds)).Run(jobs, progress)},
+      options.json);
 }
 
 int RunSweepMergeCommand(const std::vector<std::string>& files, const std::string& json) {
@@ -141,7 +148,8 @@ int RunSweepMergeCommand(const std::vector<std::string>& files, const std::strin
     if (!file) return Usage("cannot read " + path);
     std::string error;
     const auto parsed = nlohmann::ordered_json::parse(file, nullptr, false);
-    const auto shard = parsed.is_discarded() ? (error = "not JSON", std::nullopt) : SweepFromJson(parsed, &error);
+    const auto shard =
+        parsed.is_discarded() ? (error = "not JSON", std::nullopt) : SweepFromJson(parsed, &error);
     if (!shard) return Usage(path + ": " + error);
     shards.push_back(*shard);
   }

@@ -69,7 +69,8 @@ Json ToJson(const SeedResult& run) {
 SeedResult SeedResult::Of(const RunMetrics& metrics) {
   SeedResult run{metrics.seed, metrics.ok, metrics.fleet_rms_m * 1e3, {}};
   for (const ArmMetrics& arm : metrics.arms) {
-    run.arms.push_back({arm.id, arm.diverged, arm.settled_s, arm.rms_m * 1e3, arm.max_m * 1e3, arm.estimator_rms.x_m});
+    run.arms.push_back(
+        {arm.id, arm.diverged, arm.settled_s, arm.rms_m * 1e3, arm.max_m * 1e3, arm.estimator_rms.x_m});
   }
   return run;
 }
@@ -92,8 +93,10 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
       ++estimates;
     }
   }
-  if (summary.ok_count > 0) summary.fleet_rms_mm = std::sqrt(ok_squares / static_cast<double>(summary.ok_count));
-  if (estimates > 0) summary.estimator_rms_x_m = std::sqrt(estimator_squares / static_cast<double>(estimates));
+  if (summary.ok_count > 0)
+    summary.fleet_rms_mm = std::sqrt(ok_squares / static_cast<double>(summary.ok_count));
+  if (estimates > 0)
+    summary.estimator_rms_x_m = std::sqrt(estimator_squares / static_cast<double>(estimates));
 
   const size_t arm_count = runs.empty() ? 0 : runs.front().arms.size();
   for (size_t i = 0; i < arm_count; ++i) {
@@ -167,15 +170,17 @@ std::optional<Sweep> Merge(const std::vector<Sweep>& shards, std::string* error)
   Sweep merged{shards.front().scenario, shards.front().overrides, {}};
   for (const Sweep& shard : shards) {
     if (shard.scenario != merged.scenario || shard.overrides != merged.overrides) {
-      *error = "the files are of different scenarios or settings: " + merged.scenario + " and " + shard.scenario;
+      *error =
+          "the files are of different scenarios or settings: " + merged.scenario + " and " + shard.scenario;
       return std::nullopt;
     }
     merged.runs.insert(merged.runs.end(), shard.runs.begin(), shard.runs.end());
   }
   std::sort(merged.runs.begin(), merged.runs.end(),
             [](const SeedResult& a, const SeedResult& b) { return a.seed < b.seed; });
-  const auto twice = std::adjacent_find(merged.runs.begin(), merged.runs.end(),
-                                        [](const SeedResult& a, const SeedResult& b) { return a.seed == b.seed; });
+  const auto twice =
+      std::adjacent_find(merged.runs.begin(), merged.runs.end(),
+                         [](const SeedResult& a, const SeedResult& b) { return a.seed == b.seed; });
   if (twice != merged.runs.end()) {
     *error = "seed " + std::to_string(twice->seed) + " is in two of the files";
     return std::nullopt;

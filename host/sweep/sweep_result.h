@@ -40,7 +40,7 @@ struct SweepArmSummary {
   int id = 0;
   int64_t diverged = 0;
   int64_t never_settled = 0;
-  Distribution rms_mm;     ///< of the seeds in which the arm did not diverge
+  Distribution rms_mm;  ///< of the seeds in which the arm did not diverge
   Distribution max_mm;
   Distribution settled_s;  ///< of those in which it settled
 };

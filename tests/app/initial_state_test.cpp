@@ -16,7 +16,11 @@ ArmEntry PaperArm(size_t index) {
   return fleet->arms[index];
 }
 
-std::string TemporaryFile() { return testing::TempDir() + "/armada_initial_state.toml"; }
+// Tests run in parallel: a file each.
+std::string TemporaryFile() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  return testing::TempDir() + "/armada_initial_state_" + test->name() + ".toml";
+}
 
 TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
   const ArmEntry arm = PaperArm(5);

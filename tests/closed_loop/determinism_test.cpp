@@ -18,10 +18,11 @@ struct TracedRun {
 };
 
 TracedRun RunTraced(uint64_t seed) {
-  const std::string directory = testing::TempDir() + "/armada_determinism";
+  const std::string directory = testing::TempDir() + "/armada_determinism_" +
+                                testing::UnitTest::GetInstance()->current_test_info()->name();
   std::filesystem::remove_all(directory);
-  const ScenarioConfig scenario =
-      ScenarioNamed("paper", {"seconds=3.0", "window_start_s=1.0", "network.loss=0.1", "drive.velocity_noise_rad_s=0.01"});
+  const ScenarioConfig scenario = ScenarioNamed(
+      "paper", {"seconds=3.0", "window_start_s=1.0", "network.loss=0.1", "drive.velocity_noise_rad_s=0.01"});
   TraceWriter trace(directory, scenario.fleet);
   EXPECT_TRUE(trace.ok()) << trace.error();
   TracedRun run{ToJson(Simulation(scenario, seed).Run(&trace)).dump(), {}};
@@ -41,7 +42,9 @@ TEST(Determinism, TheSameSeedGivesTheSameBytes) {
   EXPECT_GT(first.files.front().size(), 10'000u);
 }
 
-TEST(Determinism, AnotherSeedGivesAnotherRun) { EXPECT_NE(RunTraced(7).files, RunTraced(8).files); }
+TEST(Determinism, AnotherSeedGivesAnotherRun) {
+  EXPECT_NE(RunTraced(7).files, RunTraced(8).files);
+}
 
 }  // namespace
 }  // namespace armada

@@ -1,5 +1,5 @@
-// What the fleet must do, in virtual time through the whole path: node, codecs, drives, network, plant. Each bound is of
-// docs/results.md, where the same figures stand over 200 seeds.
+// What the fleet must do, in virtual time through the whole path: node, codecs, drives, network, plant. Each
+// bound is of docs/results.md, where the same figures stand over 200 seeds.
 
 #include "tests/closed_loop/simulate.h"
 
@@ -27,7 +27,8 @@ TEST(PaperScenario, WithoutLatencyItTracksCloser) {
 }
 
 TEST(PaperScenario, UncompensatedLatencyCostsAccuracy) {
-  const RunMetrics compensated = Simulate("paper", 1, {"drive.latency_s=0.005", "timing.sample_to_torque_s=0.005"});
+  const RunMetrics compensated =
+      Simulate("paper", 1, {"drive.latency_s=0.005", "timing.sample_to_torque_s=0.005"});
   const RunMetrics ignored = Simulate("paper", 1, {"drive.latency_s=0.005", "timing.sample_to_torque_s=0.0"});
   EXPECT_LT(compensated.fleet_rms_m, 0.8 * ignored.fleet_rms_m);
 }
@@ -51,7 +52,9 @@ TEST(BenignScenario, TheLiteralLawTracksCoarselyAndIsNotCalledOk) {
   EXPECT_FALSE(metrics.ok);
 }
 
-TEST(BenignScenario, TheRobustLawTracks) { EXPECT_TRUE(Simulate("benign", 1).ok); }
+TEST(BenignScenario, TheRobustLawTracks) {
+  EXPECT_TRUE(Simulate("benign", 1).ok);
+}
 
 TEST(PaperScenario, TheLiteralLawFailsFromTheBoxAndTheResultSaysSo) {
   const RunMetrics metrics = Simulate("paper", 1, {"control.law=paper", "estimator.kind=paper"});

@@ -13,12 +13,14 @@ namespace armada {
 /// A scenario of hil/scenarios with overrides; fails the test when it does not load.
 inline ScenarioConfig ScenarioNamed(const std::string& name, const std::vector<std::string>& sets = {}) {
   std::vector<ConfigError> errors;
-  auto scenario = LoadScenario(std::string(ARMADA_SOURCE_DIR) + "/hil/scenarios/" + name + ".toml", sets, &errors);
+  auto scenario =
+      LoadScenario(std::string(ARMADA_SOURCE_DIR) + "/hil/scenarios/" + name + ".toml", sets, &errors);
   for (const ConfigError& error : errors) ADD_FAILURE() << ToString(error);
   return scenario.value();
 }
 
-inline RunMetrics Simulate(const std::string& name, uint64_t seed, const std::vector<std::string>& sets = {}) {
+inline RunMetrics Simulate(const std::string& name, uint64_t seed,
+                           const std::vector<std::string>& sets = {}) {
   return Simulation(ScenarioNamed(name, sets), seed).Run(nullptr);
 }
 

@@ -7,7 +7,11 @@ namespace {
 
 SeedResult ResultOf(uint64_t seed, double rms_mm, bool ok) {
   SeedResult result{seed, ok, rms_mm, {}};
-  result.arms.push_back({.id = 1, .diverged = !ok, .settled_s = std::nullopt, .rms_mm = rms_mm, .max_mm = 3.0 * rms_mm,
+  result.arms.push_back({.id = 1,
+                         .diverged = !ok,
+                         .settled_s = std::nullopt,
+                         .rms_mm = rms_mm,
+                         .max_mm = 3.0 * rms_mm,
                          .estimator_x_m = 1e-5});
   if (ok) result.arms[0].settled_s = 0.1 * static_cast<double>(seed);
   return result;
@@ -15,7 +19,8 @@ SeedResult ResultOf(uint64_t seed, double rms_mm, bool ok) {
 
 Sweep SweepOf(uint64_t first, uint64_t last, uint64_t step) {
   Sweep sweep{"paper", {}, {}};
-  for (uint64_t seed = first; seed <= last; seed += step) sweep.runs.push_back(ResultOf(seed, 0.5 + 0.001 * static_cast<double>(seed), true));
+  for (uint64_t seed = first; seed <= last; seed += step)
+    sweep.runs.push_back(ResultOf(seed, 0.5 + 0.001 * static_cast<double>(seed), true));
   return sweep;
 }
 
