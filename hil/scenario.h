@@ -127,6 +127,7 @@ enum class CriterionKind {
 struct CriterionConfig {
   CriterionKind kind = CriterionKind::kTracking;
   double error_max_m = 0.02;
+  double diverged_error_m = 0.2;
   double fleet_rms_max_m = 0.0;
   double agreement_max_m = 0.001;
 
@@ -135,6 +136,8 @@ struct CriterionConfig {
     parameter({"kind", "", 0, 0, "what ok means: tracking, agreement (leaderless)"}, kind);
     parameter({"error_max_m", "m", 0, 100, "largest error of any arm in the window; also the settling band"},
               error_max_m);
+    parameter({"diverged_error_m", "m", 0, 1e6, "error in the window beyond which an arm counts as diverged"},
+              diverged_error_m);
     parameter({"fleet_rms_max_m", "m", 0, 100, "largest fleet RMS; 0: no bound"}, fleet_rms_max_m);
     parameter(
         {"agreement_max_m", "m", 0, 100, "agreement: largest distance between two estimates in the window"},

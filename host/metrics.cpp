@@ -41,7 +41,8 @@ nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
 void RunMetrics::Judge(const CriterionConfig& criterion) {
   double sum_squares_m2 = 0.0;
   ok = !arms.empty();
-  for (const ArmMetrics& arm : arms) {
+  for (ArmMetrics& arm : arms) {
+    if (!(arm.max_m <= criterion.diverged_error_m)) arm.diverged = true;
     sum_squares_m2 += arm.rms_m * arm.rms_m;
     if (arm.diverged || !(arm.max_m < criterion.error_max_m)) ok = false;
   }

@@ -21,7 +21,7 @@ struct ArmMetrics {
   int id = 0;
   int dof = 0;
   SubtaskKind subtask = SubtaskKind::kNone;
-  bool diverged = false;
+  bool diverged = false;  ///< left every bound of speed, or of error in the window
   std::optional<double> settled_s;
   double rms_m = 0.0;
   double max_m = 0.0;
@@ -50,7 +50,7 @@ struct RunMetrics {
   double fleet_rms_m = 0.0;
   bool ok = false;
 
-  /// Fills fleet_rms_m and ok from the arms by the scenario's criterion.
+  /// Fills fleet_rms_m, ok and, by its error, diverged from the arms by the scenario's criterion.
   void Judge(const CriterionConfig& criterion);
 };
 

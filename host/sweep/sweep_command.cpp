@@ -86,6 +86,12 @@ int Usage(const std::string& message) {
   return kExitUsage;
 }
 
+std::string Fixed(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
 void PrintSummary(const SweepSummary& summary) {
   std::printf(
       "arm  diverged  unsettled  rms_mm: median      95%%    99.9%%  settled_s: median      95%%      max  "
@@ -96,9 +102,13 @@ void PrintSummary(const SweepSummary& summary) {
                 arm.rms_mm.median, arm.rms_mm.p95, arm.rms_mm.p999, arm.settled_s.median, arm.settled_s.p95,
                 arm.settled_s.max, static_cast<unsigned long long>(arm.rms_mm.worst_seed));
   }
-  std::printf("%lld of %lld fleets ok, fleet RMS %.3f mm, estimator RMS %.3g mm\n",
-              static_cast<long long>(summary.ok_count), static_cast<long long>(summary.count),
-              summary.fleet_rms_mm, summary.estimator_rms_x_m * 1e3);
+  std::printf("fleet RMS of all: median %.3f mm, 95%% %.3f mm, max %.3f mm (seed %llu)\n",
+              summary.fleet_rms_all_mm.median, summary.fleet_rms_all_mm.p95, summary.fleet_rms_all_mm.max,
+              static_cast<unsigned long long>(summary.fleet_rms_all_mm.worst_seed));
+  const std::string fleet_rms =
+      summary.fleet_rms_mm ? ", their RMS " + Fixed(*summary.fleet_rms_mm) + " mm" : std::string();
+  std::printf("%lld of %lld fleets ok%s, estimator RMS %.3g mm\n", static_cast<long long>(summary.ok_count),
+              static_cast<long long>(summary.count), fleet_rms.c_str(), summary.estimator_rms_x_m * 1e3);
   if (!summary.failed_seeds.empty()) {
     std::printf("not ok:");
     for (size_t i = 0; i < summary.failed_seeds.size() && i < 10; ++i) {

@@ -79,9 +79,11 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   SweepSummary summary;
   summary.count = static_cast<int64_t>(runs.size());
   double ok_squares = 0.0;
+  std::vector<Sample> fleets;
   double estimator_squares = 0.0;
   int64_t estimates = 0;
   for (const SeedResult& run : runs) {
+    fleets.push_back({run.fleet_rms_mm, run.seed});
     if (run.ok) {
       ++summary.ok_count;
       ok_squares += run.fleet_rms_mm * run.fleet_rms_mm;
@@ -97,6 +99,8 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
     summary.fleet_rms_mm = std::sqrt(ok_squares / static_cast<double>(summary.ok_count));
   if (estimates > 0)
     summary.estimator_rms_x_m = std::sqrt(estimator_squares / static_cast<double>(estimates));
+
+  summary.fleet_rms_all_mm = DistributionOf(std::move(fleets));
 
   const size_t arm_count = runs.empty() ? 0 : runs.front().arms.size();
   for (size_t i = 0; i < arm_count; ++i) {
@@ -144,7 +148,8 @@ Json ToJson(const Sweep& sweep) {
           {"set", sweep.overrides},
           {"count", summary.count},
           {"ok_count", summary.ok_count},
-          {"fleet_rms_mm", summary.fleet_rms_mm},
+          {"fleet_rms_mm", summary.fleet_rms_mm ? Json(*summary.fleet_rms_mm) : Json(nullptr)},
+          {"fleet_rms_all_mm", ToJson(summary.fleet_rms_all_mm)},
           {"estimator_rms_x", summary.estimator_rms_x_m},
           {"failed_seeds", summary.failed_seeds},
           {"arms", arms},

@@ -48,7 +48,8 @@ struct SweepArmSummary {
 struct SweepSummary {
   int64_t count = 0;
   int64_t ok_count = 0;
-  double fleet_rms_mm = 0.0;       ///< root of the mean square over the fleets that are ok
+  std::optional<double> fleet_rms_mm;  ///< root of the mean square over the fleets that are ok; none without one
+  Distribution fleet_rms_all_mm;       ///< fleet RMS of every fleet, ok or not
   double estimator_rms_x_m = 0.0;  ///< the same over all fleets and arms
   std::vector<SweepArmSummary> arms;
   std::vector<uint64_t> failed_seeds;

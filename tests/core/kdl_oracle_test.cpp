@@ -90,7 +90,7 @@ TEST_F(KdlOracle, AgreesOnInertiaCoriolisAndGravity) {
   ForRandomCases(3, [](const Case& c, RandomArms&) {
     const auto n = static_cast<unsigned>(c.arm.dof());
     KDL::ChainDynParam dynamics(c.chain, c.gravity);
-    KDL::JntSpaceInertiaMatrix H(n);
+    KDL::JntSpaceInertiaMatrix H(c.arm.dof());
     KDL::JntArray C_dq(n), g(n);
     ASSERT_EQ(dynamics.JntToMass(ToKdl(c.q), H), 0);
     ASSERT_EQ(dynamics.JntToCoriolis(ToKdl(c.q), ToKdl(c.dq), C_dq), 0);

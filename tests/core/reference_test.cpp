@@ -167,8 +167,8 @@ MatrixFunction DampedInverse(const Eigen::Matrix2d& G, const Eigen::Matrix2d& dG
     return -(1.0 - (x < threshold ? l_max / threshold : 0.0)) / (denominator(x) * denominator(x));
   };
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(G);
-  const Eigen::Matrix2d U = eigen.eigenvectors();
-  const Eigen::Vector2d x = eigen.eigenvalues();
+  const Eigen::Matrix2d& U = eigen.eigenvectors();
+  const Eigen::Vector2d& x = eigen.eigenvalues();
   const Eigen::Vector2d f(1.0 / denominator(x[0]), 1.0 / denominator(x[1]));
   Eigen::Matrix2d weights;
   const double across = (f[1] - f[0]) / (x[1] - x[0]);
@@ -193,7 +193,7 @@ JointVector AnalyticAcceleration(const PlanarArm& arm, const JointVector& q, con
     const PlanarArm::Posture posture = arm.At(position);
     return SubtaskVelocity(subtask, arm, position, posture, arm.Jacobian(posture));
   };
-  const JointVector motion = J_sharp * dr + dJ_sharp * r;
+  JointVector motion = J_sharp * dr + dJ_sharp * r;
   if (arm.dof() == PlanarArm::kTaskDim) return motion;
   const JointVector phi = phi_at(q);
   const JointVector dphi = (phi_at(q + 1e-6 * dq) - phi_at(q - 1e-6 * dq)) / 2e-6;

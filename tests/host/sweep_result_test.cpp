@@ -65,7 +65,9 @@ TEST(Sweep, SummaryCountsFailuresAndNamesTheWorstSeed) {
   EXPECT_EQ(summary.count, 100);
   EXPECT_EQ(summary.ok_count, 99);
   EXPECT_EQ(summary.failed_seeds, std::vector<uint64_t>{100});
-  EXPECT_LT(summary.fleet_rms_mm, 1.0) << "over the fleets that are ok";
+  ASSERT_TRUE(summary.fleet_rms_mm.has_value());
+  EXPECT_LT(*summary.fleet_rms_mm, 1.0) << "over the fleets that are ok";
+  EXPECT_EQ(summary.fleet_rms_all_mm.worst_seed, 100u);
   ASSERT_EQ(summary.arms.size(), 1u);
   EXPECT_EQ(summary.arms[0].diverged, 1);
   EXPECT_EQ(summary.arms[0].never_settled, 1);
