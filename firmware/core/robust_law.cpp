@@ -109,7 +109,7 @@ JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawI
       MinimizeWithL1(config_.implicit_control, A, H_hat_ * s, h * config_.gains.K_r_Nm);
 
   const RegressorMatrix Y = arm_.Regressor(at, dq_mid, dq_r, ddq_r);
-  const JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + observer_.d_hat_Nm();
+  JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + observer_.d_hat_Nm();
 
   const AdaptationKind kind = config_.adaptation.kind;
   if (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth) {

@@ -11,7 +11,7 @@ namespace {
 
 // Arm `id` at rest with a bent elbow; the estimate starts on the leader, theta_hat at `theta_share` of the
 // truth.
-ClosedLoop Start(ArmControllerConfig config, double theta_share = 1.0) {
+ClosedLoop Start(const ArmControllerConfig& config, double theta_share = 1.0) {
   const ParameterVector theta = PlanarArm(config.arm).Theta();
   ClosedLoop loop(config, {PaperLeader(0.0), theta_share * theta}, PaperLeader);
   loop.plant().q_rad = {0.3, 1.2, 0.5};
