@@ -13,16 +13,15 @@ struct JointTruth {
 
 /// What an emulated drive is like, besides its JointDriveConfig.
 struct EmulatedDriveConfig {
-  odrive::Firmware firmware = odrive::Firmware::kV06;
-  double latency_s = 0.001;            ///< from a command's frame to its torque
-  double encoder_counts_per_turn = 0;  ///< of the motor; 0: continuous
-  double velocity_noise_rad_s = 0.0;   ///< standard deviation, joint side
-  double feedback_period_s = 0.0;      ///< of the cyclic estimates; 0: on request only
-  double watchdog_s = 0.03;            ///< 0: off
+  odrive::Firmware firmware = odrive::Firmware::kV06;  ///< not in a file: it follows the arm's profile
+  double latency_s = 0.001;                            ///< from a command's frame to its torque
+  double encoder_counts_per_turn = 0;                  ///< of the motor; 0: continuous
+  double velocity_noise_rad_s = 0.0;                   ///< standard deviation, joint side
+  double feedback_period_s = 0.0;                      ///< of the cyclic estimates; 0: on request only
+  double watchdog_s = 0.03;                            ///< 0: off
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
-    parameter({"firmware", "", 0, 0, "generation of the drive's firmware: 0.5, 0.6"}, firmware);
     parameter({"latency_s", "s", 0, 0.1, "from a command's frame to its torque"}, latency_s);
     parameter({"encoder_counts_per_turn", "", 0, 1e8, "encoder counts per motor turn; 0: continuous"},
               encoder_counts_per_turn);

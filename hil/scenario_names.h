@@ -33,12 +33,4 @@ constexpr auto EnumNames(CriterionKind) {
       {{kTracking, "tracking"}, {kAgreement, "agreement"}});
 }
 
-namespace odrive {
-
-constexpr auto EnumNames(Firmware) {
-  using enum Firmware;
-  return std::to_array<std::pair<Firmware, std::string_view>>({{kV05, "v0.5"}, {kV06, "v0.6"}});
-}
-
-}  // namespace odrive
 }  // namespace armada

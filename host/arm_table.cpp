@@ -22,11 +22,12 @@ void PrintArmTable(const RunMetrics& metrics, std::ostream& out) {
          "state\n";
   for (const ArmMetrics& arm : metrics.arms) {
     const std::string settled = arm.settled_s ? Number("%.2f", *arm.settled_s) : "never";
+    const std::string state = arm.faults.empty() ? arm.state : arm.state + " (" + arm.faults.front() + ")";
     const std::string subtask = arm.subtask_rms_rad_s ? Number("%.3f", *arm.subtask_rms_rad_s) : "-";
     std::snprintf(line, sizeof line, "%3d  %6d  %9s  %7.3f  %7.3f  %8.4f  %9.1f  %9d  %9.3f  %7s  %s%s\n",
                   arm.id, arm.dof, settled.c_str(), arm.rms_m * 1e3, arm.max_m * 1e3,
                   arm.estimator_rms.x_m * 1e3, arm.torque_max_Nm, arm.saturated_ticks, arm.parameter_error,
-                  subtask.c_str(), arm.state.c_str(), arm.diverged ? " DIVERGED" : "");
+                  subtask.c_str(), state.c_str(), arm.diverged ? " DIVERGED" : "");
     out << line;
   }
   std::snprintf(line, sizeof line, "%s: fleet RMS %.3f mm over %g-%g s, law %s, estimator %s, seed %llu\n",

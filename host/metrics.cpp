@@ -44,7 +44,7 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
   for (ArmMetrics& arm : arms) {
     if (!(arm.max_m <= criterion.diverged_error_m)) arm.diverged = true;
     sum_squares_m2 += arm.rms_m * arm.rms_m;
-    if (arm.diverged || !(arm.max_m < criterion.error_max_m)) ok = false;
+    if (arm.diverged || !arm.faults.empty() || !(arm.max_m < criterion.error_max_m)) ok = false;
   }
   fleet_rms_m = arms.empty() ? 0.0 : std::sqrt(sum_squares_m2 / static_cast<double>(arms.size()));
   if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;

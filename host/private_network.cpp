@@ -60,7 +60,7 @@ bool UnshareNetwork(std::string* error) {
     const char* hint = errno == EINVAL
                            ? "the process has threads already, a namespace must be entered before"
                            : "this kernel lets only root make namespaces; run as root, or make a route "
-                             "with `ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo`";
+                             "with `ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo`";
     return Fail(hint, error);
   }
   // The user stays who it was. The kernel wants setgroups given up before an unprivileged user maps a group.

@@ -60,7 +60,7 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   }
   final_state_ = node_->state();
   out_.Clear();
-  node_->Stop(&out_);
+  node_->Disable(&out_);
   Send();
 }
 
@@ -77,6 +77,7 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
   out_.Clear();
   node_->Step(tick_ns, &out_);
+  if (bus_down_) node_->Fail(FaultCause::kBusDown, &out_);
   Send();
   const int64_t sent_ns = MonotonicNow();
 
@@ -94,17 +95,20 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
 void ArmLoop::Send() {
   // A frame that the bus does not take is dropped and counted there: an old torque is never sent late.
-  for (const CanFrame& frame : out_) bus_->Send(frame);
+  for (const CanFrame& frame : out_) {
+    if (bus_->Send(frame) == BusStatus::kDown) bus_down_ = true;
+  }
 }
 
 int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
   CanFrame frame;
-  int64_t last_ns = MonotonicNow();
-  while (!node_->SamplesComplete() && bus_->Receive(deadline_ns, &frame) == BusStatus::kOk) {
+  while (!node_->SamplesComplete()) {
+    const BusStatus status = bus_->Receive(deadline_ns, &frame);
+    if (status == BusStatus::kDown) bus_down_ = true;
+    if (status != BusStatus::kOk) break;
     node_->OnFrame(frame);
-    last_ns = MonotonicNow();
   }
-  return last_ns;
+  return MonotonicNow();
 }
 
 void ArmLoop::TakeWaitingFrames() {

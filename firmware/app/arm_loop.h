@@ -42,7 +42,8 @@ class ArmLoop {
  private:
   void Tick(int64_t tick_ns, int64_t woken_ns);
   void Send();
-  /// Takes frames until the samples are complete or the deadline has passed; returns when the last one came.
+  /// Takes frames until the samples are complete or the deadline has passed; returns the time at which it had
+  /// what it gets.
   int64_t AwaitSamples(int64_t deadline_ns);
   /// Takes what is waiting: heartbeats count, samples from before the request must not.
   void TakeWaitingFrames();
@@ -61,6 +62,7 @@ class ArmLoop {
   telemetry_t telemetry_{};
   LoopReport report_;
   ControllerState final_state_ = ControllerState::kInit;
+  bool bus_down_ = false;
   int64_t heap_at_start_ = 0;
   int64_t faults_at_start_ = 0;
 };

@@ -98,6 +98,9 @@ int Run(const Options& options) {
     WriteLoopReport(*loop, *node, *bus, *link, grant, file);
     if (!file.flush()) return Fail(options, "cannot write " + options.json);
   }
+  if (node->fault() != FaultCause::kNone) {
+    return Fail(options, std::string("ended in FAULT: ") + NameOf(node->fault()));
+  }
   return kExitOk;
 }
 

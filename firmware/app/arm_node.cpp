@@ -1,6 +1,7 @@
 #include "firmware/app/arm_node.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "firmware/can/odrive_cansimple.h"
@@ -10,6 +11,7 @@ namespace armada {
 namespace {
 
 constexpr int kLeader = 0;
+constexpr float kNoLeader = -1.0f;  // in a message: no leader state is behind this estimate
 
 double Seconds(int64_t duration_ns) {
   return 1e-9 * static_cast<double>(duration_ns);
@@ -29,6 +31,8 @@ std::unique_ptr<JointDrive> MakeDrive(DriveProfile profile, const JointDriveConf
   switch (profile) {
     case DriveProfile::kODriveCanSimple:
       break;
+    case DriveProfile::kODriveCanSimpleV05:
+      return std::make_unique<ODriveCanSimple>(config, odrive::Firmware::kV05);
   }
   return std::make_unique<ODriveCanSimple>(config);
 }
@@ -89,7 +93,8 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   message.arm_id = static_cast<int8_t>(id_);
   message.task_dim = PlanarArm::kTaskDim;
   message.agreement = static_cast<int16_t>(controller_.estimator().agreement());
-  message.leader_age_s = leader_age_s_;
+  const double leader_age_s = controller_.estimator().leader_age_s();
+  message.leader_age_s = std::isfinite(leader_age_s) ? static_cast<float>(leader_age_s) : kNoLeader;
   Copy(zeta.x_m, message.x_m);
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
@@ -138,7 +143,6 @@ void ArmNode::OnMessage(const LcmMessage& message) {
       taken = Decode(message.payload, &leader) && Take(source, leader, message.arrival_ns);
       if (taken) {
         source.neighbour.agreement = Estimator::kMaxAgreement;
-        source.leader_age_s = 0.0f;
       }
     } else {
       if (ParseArmChannel(kEstimatePrefix, message.channel) != source.arm_id) continue;
@@ -147,7 +151,8 @@ void ArmNode::OnMessage(const LcmMessage& message) {
               Take(source, estimate, message.arrival_ns);
       if (taken) {
         source.neighbour.agreement = estimate.agreement;
-        source.leader_age_s = estimate.leader_age_s;
+        source.leader_age_s = estimate.leader_age_s >= 0.0f ? double{estimate.leader_age_s}
+                                                            : std::numeric_limits<double>::infinity();
       }
     }
     if (!taken) ++rejected_messages_;
@@ -161,20 +166,15 @@ double ArmNode::AgeOf(const Source& source, int64_t now_ns) const {
 
 void ArmNode::ReadNeighbours(int64_t tick_ns) {
   const size_t topology = schedule_.At(Seconds(tick_ns - epoch_ns_));
-  float leader_age_s = std::numeric_limits<float>::infinity();
   for (size_t i = 0; i < sources_.size(); ++i) {
     Source& source = sources_[i];
     source.neighbour.weight = source.weight[topology];
     if (source.neighbour.heard) {
       source.neighbour.age_s = AgeOf(source, tick_ns);
-      if (source.neighbour.weight > 0.0 && source.leader_age_s >= 0.0f) {
-        leader_age_s =
-            std::min(leader_age_s, source.leader_age_s + static_cast<float>(source.neighbour.age_s));
-      }
+      source.neighbour.leader_age_s = source.leader_age_s + source.neighbour.age_s;
     }
     input_.neighbours.list[i] = source.neighbour;
   }
-  leader_age_s_ = leader_age_s < std::numeric_limits<float>::infinity() ? leader_age_s : -1.0f;
 }
 
 // Joint state at one instant from samples of slightly different ones, missing ones predicted. False when a
@@ -205,23 +205,38 @@ bool ArmNode::ReadJoints(int64_t tick_ns) {
 }
 
 void ArmNode::Step(int64_t tick_ns, FrameList* out) {
-  if (state_ == ControllerState::kFault) return;
+  input_.tick_s = input_.sample_s = Seconds(tick_ns - epoch_ns_);
+  ReadNeighbours(tick_ns);
   const bool drives_follow = std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) {
     return drive->state() == DriveState::kTorque;
   });
-  if (!drives_follow || !ReadJoints(tick_ns)) return Stop(out);
+  if (state_ != ControllerState::kFault) {
+    if (!drives_follow) {
+      Fail(FaultCause::kDriveLeftTorque, out);
+    } else if (!ReadJoints(tick_ns)) {
+      Fail(FaultCause::kFeedbackStale, out);
+    }
+  }
+  if (state_ == ControllerState::kFault) {
+    controller_.StepEstimator(input_.tick_s, input_.neighbours);
+    return;
+  }
 
-  ReadNeighbours(tick_ns);
   const JointVector tau_Nm = controller_.Step(input_);
   state_ = controller_.status().state;
-  if (state_ == ControllerState::kFault) return Stop(out);
+  if (state_ == ControllerState::kFault) return Fail(FaultCause::kNonFiniteTorque, out);
   for (size_t i = 0; i < drives_.size(); ++i) {
     drives_[i]->CommandTorque(tau_Nm[static_cast<Eigen::Index>(i)], out);
   }
 }
 
-void ArmNode::Stop(FrameList* out) {
+void ArmNode::Fail(FaultCause cause, FrameList* out) {
+  if (fault_ == FaultCause::kNone) fault_ = cause;  // the first is the reason, later ones follow from it
   state_ = ControllerState::kFault;
+  Disable(out);
+}
+
+void ArmNode::Disable(FrameList* out) {
   for (const auto& drive : drives_) drive->Disable(out);
 }
 
@@ -242,7 +257,11 @@ void ArmNode::FillTelemetry(telemetry_t* telemetry) {
   };
   copy(input_.q_rad, telemetry->q_rad);
   copy(input_.dq_rad_s, telemetry->dq_rad_s);
-  copy(status.tau_Nm, telemetry->tau_Nm);
+  if (state_ == ControllerState::kFault) {
+    std::fill(std::begin(telemetry->tau_Nm), std::end(telemetry->tau_Nm), 0.0);
+  } else {
+    copy(status.tau_Nm, telemetry->tau_Nm);
+  }
   copy(status.x_m, telemetry->x_m);
   copy(d_hat_Nm, telemetry->d_hat_Nm);
   copy(theta_hat, telemetry->theta_hat);

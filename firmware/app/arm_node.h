@@ -14,6 +14,25 @@
 
 namespace armada {
 
+/// Why a node went to kFault.
+enum class FaultCause { kNone, kDriveLeftTorque, kFeedbackStale, kNonFiniteTorque, kBusDown };
+
+constexpr const char* NameOf(FaultCause cause) {
+  switch (cause) {
+    case FaultCause::kNone:
+      return "none";
+    case FaultCause::kDriveLeftTorque:
+      return "drive not in torque mode";
+    case FaultCause::kFeedbackStale:
+      return "feedback stale";
+    case FaultCause::kNonFiniteTorque:
+      return "torque not finite";
+    case FaultCause::kBusDown:
+      break;
+  }
+  return "bus down";
+}
+
 /// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages
 /// out. The process and the simulation run the same object. It allocates in the constructor only. Times are
 /// nanoseconds of the board's monotonic clock; the fleet's time 0 is `epoch_ns`.
@@ -39,10 +58,14 @@ class ArmNode {
   /// What the tick did, for people; the process adds its own timing.
   void FillTelemetry(telemetry_t* telemetry);
 
-  /// Drives go to rest in their own way; the node is in kFault until it is started anew.
-  void Stop(FrameList* out);
+  /// Something is wrong: drives go to rest in their own way, and the node is in kFault until it is started
+  /// anew. Its estimator goes on: neighbours may need it.
+  void Fail(FaultCause cause, FrameList* out);
+  /// The end of a run: drives go to rest in their own way.
+  void Disable(FrameList* out);
 
   ControllerState state() const { return state_; }
+  FaultCause fault() const { return fault_; }
   int id() const { return id_; }
   const ArmController& controller() const { return controller_; }
   /// Messages dropped: malformed, stale, or of another fleet's shape.
@@ -55,7 +78,7 @@ class ArmNode {
     ClockOffset clock;
     int64_t stamp_ns = 0;
     Neighbour neighbour{};
-    float leader_age_s = -1.0f;                                ///< as sent
+    double leader_age_s = 0.0;  ///< as sent; infinite when the sender knows of no leader
     std::array<double, TopologySchedule::kMaxCount> weight{};  ///< by topology
   };
 
@@ -75,13 +98,13 @@ class ArmNode {
   std::vector<Source> sources_;
   ArmController controller_;
   ControllerState state_ = ControllerState::kInit;
+  FaultCause fault_ = FaultCause::kNone;
   ArmInput input_;
   int64_t request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
   int64_t estimate_sequence_ = 0;
   int64_t telemetry_sequence_ = 0;
   int64_t rejected_messages_ = 0;
-  float leader_age_s_ = -1.0f;
 };
 
 }  // namespace armada

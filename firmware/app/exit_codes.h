@@ -5,9 +5,10 @@ namespace armada {
 /// Exit codes of every Armada program.
 enum ExitCode : int {
   kExitOk = 0,
-  kExitFailed = 1,      ///< ran, and failed its own criterion; or the world refused (no bus, no multicast)
-  kExitUsage = 2,       ///< the command line is wrong
-  kExitBadConfig = 78,  ///< EX_CONFIG of sysexits.h: every error has been listed
+  kExitFailed = 1,         ///< ran, and failed its own criterion; or the world refused (no bus, no multicast)
+  kExitUsage = 2,          ///< the command line is wrong
+  kExitInterrupted = 130,  ///< a run stopped by Ctrl-C, as shells have it
+  kExitBadConfig = 78,     ///< EX_CONFIG of sysexits.h: every error has been listed
 };
 
 }  // namespace armada

@@ -10,7 +10,10 @@
 
 namespace armada {
 
-enum class DriveProfile { kODriveCanSimple };
+enum class DriveProfile {
+  kODriveCanSimple,     ///< firmware 0.6
+  kODriveCanSimpleV05,  ///< firmware 0.5: another heartbeat
+};
 
 struct LcmLinkConfig {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";

@@ -30,7 +30,9 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
                      const RealtimeGrant& grant, std::ostream& out) {
   const LoopReport& report = loop.report();
   out << "{\n  \"id\": " << node.id() << ",\n  \"state\": \"" << NameOf(loop.final_state())
-      << "\",\n  \"timing\": {\n";
+      << "\",\n  \"faults\": [";
+  if (node.fault() != FaultCause::kNone) out << '"' << NameOf(node.fault()) << '"';
+  out << "],\n  \"timing\": {\n";
   Put(out, "wakeup_lateness", report.wakeup_lateness);
   Put(out, "compute", report.compute);
   Put(out, "sample_to_torque", report.sample_to_torque);

@@ -22,18 +22,25 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
   status_.tau_Nm = JointVector::Zero(arm_.dof());
 }
 
+Zeta ArmController::StepEstimator(double tick_s, const Neighbours& neighbours) {
+  const double h = config_.timing.period_s;
+  const double since_valid_s = estimating_ ? tick_s - zeta_time_s_ : 0.0;
+  const double missed_s = since_valid_s > 0.5 * h ? since_valid_s : 0.0;  // ticks were missed
+  estimating_ = true;
+  Zeta zeta_at_tick = Taylor(estimator_.zeta(), missed_s);
+  estimator_.Update(neighbours, h, missed_s);
+  zeta_time_s_ = tick_s + h;
+  return zeta_at_tick;
+}
+
 JointVector ArmController::Step(const ArmInput& in) {
   const double h = config_.timing.period_s;
-  const double elapsed_s = started_ ? in.sample_s - previous_sample_s_ : h;
-  if (started_ && in.tick_s - zeta_time_s_ > 0.5 * h)
-    estimator_.Coast(in.tick_s - zeta_time_s_);  // ticks were missed
-  started_ = true;
+  const double elapsed_s = controlling_ ? in.sample_s - previous_sample_s_ : h;
+  controlling_ = true;
   previous_sample_s_ = in.sample_s;
 
   // Networked algorithm (1.9): from t_k to t_k + h.
-  const Zeta zeta_at_tick = estimator_.zeta();
-  estimator_.Update(in.neighbours, h);
-  zeta_time_s_ = in.tick_s + h;
+  const Zeta zeta_at_tick = StepEstimator(in.tick_s, in.neighbours);
 
   // Local algorithm (1.2), (1.5), (1.8) at the sample's time.
   const double sample_delay_s = in.sample_s - in.tick_s;

@@ -89,6 +89,9 @@ class ArmController {
   /// One tick: estimator (1.9), law (1.2) with reference (1.5) and adaptation (1.8), limits, gate. Torque to
   /// send, N m.
   JointVector Step(const ArmInput& in);
+  /// The networked algorithm (1.9) alone, for a tick in which the arm itself is out of action: neighbours
+  /// still need the estimate. Returns zeta at the tick.
+  Zeta StepEstimator(double tick_s, const Neighbours& neighbours);
 
   /// The state that neighbours may use, valid at `zeta_time_s()` on the clock of ArmInput.
   const Zeta& zeta() const { return estimator_.zeta(); }
@@ -109,7 +112,8 @@ class ArmController {
   std::variant<RobustLaw, PaperLaw> law_;
   TorqueGate gate_;
   ArmStatus status_;
-  bool started_ = false;
+  bool estimating_ = false;
+  bool controlling_ = false;
   double zeta_time_s_ = 0.0;
   double previous_sample_s_ = 0.0;
 };

@@ -10,27 +10,31 @@ double Sign(double value) {
   return static_cast<double>((value > 0.0) - (value < 0.0));
 }
 
-// One block (x, v or a) of (1.9), explicit: a step of h beta against the sign of the disagreement.
-void ExplicitStep(const TaskVector& mean, double h_beta, TaskVector& state, bool& in_band) {
+// One block (x, v or a) of (1.9), explicit: a step of h beta against the sign of the disagreement. False when
+// out of the band: explicit sgn chatters by a step, and so does each neighbour, while the leader moves, so it
+// is four steps wide.
+bool ExplicitStep(const TaskVector& mean, double h_beta, double band, TaskVector& state) {
+  bool in_band = true;
   for (Eigen::Index c = 0; c < state.size(); ++c) {
     const double disagreement = state[c] - mean[c];
-    // Explicit sgn chatters by one step around the mean, so its band is two steps wide.
-    if (std::abs(disagreement) > 2.0 * h_beta) in_band = false;
+    if (std::abs(disagreement) > 4.0 * band) in_band = false;
     state[c] -= h_beta * Sign(disagreement);
   }
+  return in_band;
 }
 
 // The same with the sgn evaluated at the end of the step, solved in closed form: f moves to the mean, or by h
 // beta.
-void ImplicitStep(const TaskVector& f, const TaskVector& mean, double h_beta, TaskVector& state,
-                  bool& in_band) {
+bool ImplicitStep(const TaskVector& f, const TaskVector& mean, double h_beta, double band,
+                  TaskVector& state) {
+  bool in_band = true;
   for (Eigen::Index c = 0; c < state.size(); ++c) {
     const double distance = f[c] - mean[c];
-    const double beyond = std::abs(distance) - h_beta;
     // Equality up to rounding is inside: a slope of exactly beta must not flicker.
-    if (beyond > 1e-7 * h_beta) in_band = false;
-    state[c] = mean[c] + Sign(distance) * std::max(0.0, beyond);
+    if (std::abs(distance) > (1.0 + 1e-7) * band) in_band = false;
+    state[c] = mean[c] + Sign(distance) * std::max(0.0, std::abs(distance) - h_beta);
   }
+  return in_band;
 }
 
 }  // namespace
@@ -43,24 +47,35 @@ Estimator::Estimator(const EstimatorConfig& config, const Zeta& initial) : confi
   }
 }
 
-void Estimator::Update(const Neighbours& neighbours, double h_s) {
+bool Estimator::CountsAsHeard(const Neighbour& neighbour) const {
+  if (!neighbour.heard || neighbour.age_s > config_.age_max_s) return false;
+  return config_.leaderless || neighbour.leader_age_s <= config_.age_max_s;
+}
+
+void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s) {
   const bool predict = config_.kind == EstimatorKind::kPredictive;
   const Eigen::Index m = zeta_.x_m.size();
-  const Zeta f = predict ? Taylor(zeta_, h_s) : zeta_;
+  const double step_s = missed_s + h_s;
+  const Zeta f = predict ? Taylor(zeta_, step_s) : zeta_;
 
   // Weighted mean of what was heard. Without a leader a node is one of its own neighbours: averaging over the
   // others alone only passes values around a ring.
   Zeta mean = config_.leaderless ? f : Zeta::Zero(m);
   double degree = config_.leaderless ? 1.0 : 0.0;
+  double oldest_s = 0.0;
+  double leader_age_s = leader_age_s_ + missed_s;
   for (int j = 0; j < neighbours.count; ++j) {
     const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
-    if (!neighbour.heard || neighbour.weight <= 0.0) continue;
+    if (neighbour.weight <= 0.0 || !CountsAsHeard(neighbour)) continue;
     const Zeta z_j = predict ? Taylor(neighbour.zeta, neighbour.age_s + h_s) : neighbour.zeta;
     mean.x_m += neighbour.weight * z_j.x_m;
     mean.v_m_s += neighbour.weight * z_j.v_m_s;
     mean.a_m_s2 += neighbour.weight * z_j.a_m_s2;
     degree += neighbour.weight;
+    oldest_s = std::max(oldest_s, neighbour.age_s);
+    leader_age_s = std::min(leader_age_s, neighbour.leader_age_s);
   }
+  leader_age_s_ = leader_age_s + h_s;
 
   if (degree <= 0.0) {  // nobody heard: coast on the own prediction, which is an estimate of nothing
     zeta_ = f;
@@ -69,39 +84,32 @@ void Estimator::Update(const Neighbours& neighbours, double h_s) {
     mean.x_m /= degree;
     mean.v_m_s /= degree;
     mean.a_m_s2 /= degree;
-    in_band_ = true;
-    if (config_.kind == EstimatorKind::kPaper) {
-      ExplicitStep(mean.x_m, h_s * config_.beta_1_m_s, zeta_.x_m, in_band_);
-      ExplicitStep(mean.v_m_s, h_s * config_.beta_2_m_s2, zeta_.v_m_s, in_band_);
-      ExplicitStep(mean.a_m_s2, h_s * config_.beta_3_m_s3, zeta_.a_m_s2, in_band_);
-    } else {
-      ImplicitStep(f.x_m, mean.x_m, h_s * config_.beta_1_m_s, zeta_.x_m, in_band_);
-      ImplicitStep(f.v_m_s, mean.v_m_s, h_s * config_.beta_2_m_s2, zeta_.v_m_s, in_band_);
-      ImplicitStep(f.a_m_s2, mean.a_m_s2, h_s * config_.beta_3_m_s3, zeta_.a_m_s2, in_band_);
-    }
+    // A leader within (A2) can have moved by beta over the age of what was heard, too.
+    const double band_s = step_s + oldest_s;
+    const auto step = [&](const TaskVector& f_part, const TaskVector& mean_part, double beta,
+                          TaskVector& part) {
+      return config_.kind == EstimatorKind::kPaper
+                 ? ExplicitStep(mean_part, step_s * beta, band_s * beta, part)
+                 : ImplicitStep(f_part, mean_part, step_s * beta, band_s * beta, part);
+    };
+    const bool x_in_band = step(f.x_m, mean.x_m, config_.beta_1_m_s, zeta_.x_m);
+    const bool v_in_band = step(f.v_m_s, mean.v_m_s, config_.beta_2_m_s2, zeta_.v_m_s);
+    const bool a_in_band = step(f.a_m_s2, mean.a_m_s2, config_.beta_3_m_s3, zeta_.a_m_s2);
+    in_band_ = x_in_band && v_in_band && a_in_band;
   }
   UpdateAgreement(neighbours);
 }
 
-void Estimator::Coast(double ahead_s) {
-  if (config_.kind == EstimatorKind::kPredictive) zeta_ = Taylor(zeta_, ahead_s);
-}
-
 void Estimator::UpdateAgreement(const Neighbours& neighbours) {
-  if (in_band_) {
-    int upstream = kMaxAgreement;
-    for (int j = 0; j < neighbours.count; ++j) {
-      const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
-      if (neighbour.weight <= 0.0) continue;
-      upstream = std::min(upstream, neighbour.heard ? neighbour.agreement : 0);
-    }
-    agreement_ = std::min({agreement_ + 1, upstream + 1, kMaxAgreement});
-    ticks_out_of_band_ = 0;
-    if (agreement_ >= config_.sync_ticks) synced_ = true;
-  } else {
-    agreement_ = 0;
-    if (++ticks_out_of_band_ >= config_.desync_ticks) synced_ = false;
+  agreement_ = in_band_ ? std::min(agreement_ + 1, kMaxAgreement) : 0;
+  for (int j = 0; j < neighbours.count; ++j) {
+    const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
+    if (neighbour.weight <= 0.0) continue;
+    agreement_ = std::min(agreement_, CountsAsHeard(neighbour) ? neighbour.agreement + 1 : 0);
   }
+  ticks_out_of_band_ = in_band_ ? 0 : ticks_out_of_band_ + 1;
+  if (agreement_ >= config_.sync_ticks) synced_ = true;
+  if (ticks_out_of_band_ >= config_.desync_ticks) synced_ = false;
 }
 
 }  // namespace armada

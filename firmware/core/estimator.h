@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "firmware/core/zeta.h"
 
@@ -17,8 +18,9 @@ struct EstimatorConfig {
   double beta_1_m_s = 4.0;    ///< above sup |v_0| (A2)
   double beta_2_m_s2 = 7.0;   ///< above sup |a_0|
   double beta_3_m_s3 = 21.0;  ///< above sup |da_0/dt|
-  int sync_ticks = 2;
+  int sync_ticks = 8;
   int desync_ticks = 20;
+  double age_max_s = 0.2;
   bool leaderless = false;
 
   template <class Visitor>
@@ -32,11 +34,15 @@ struct EstimatorConfig {
     parameter({"beta_3_m_s3", "m/s^3", 1e-6, 1e5, "beta_3 of (1.9), above the leader's jerk per axis"},
               beta_3_m_s3);
     parameter({"sync_ticks", "ticks", 1, 1000,
-               "ticks of agreement, here and upstream, after which the estimate is used for motion"},
+               "ticks of agreement, here and upstream, after which the estimate is used for motion; above "
+               "the graph's depth"},
               sync_ticks);
     parameter(
         {"desync_ticks", "ticks", 1, 10000, "consecutive ticks out of the band after which it no longer is"},
         desync_ticks);
+    parameter({"age_max_s", "s", 1e-3, 10,
+               "a neighbour whose state, or whose news of the leader, is older counts as not heard"},
+              age_max_s);
     parameter({"leaderless", "", 0, 1,
                "Corollary 2: no leader; the arms agree on a point (v = a = 0) and meet there"},
               leaderless);
@@ -50,6 +56,8 @@ struct Neighbour {
   double age_s = 0.0;   ///< now minus the time at which the state was valid
   int agreement = 0;    ///< its agreement count; the leader's is kMaxAgreement
   bool heard = false;   ///< false until a first message has come
+  double leader_age_s =
+      0.0;  ///< age now of the newest leader state behind it; 0 for the leader, infinite for none
 };
 
 struct Neighbours {
@@ -69,11 +77,8 @@ class Estimator {
 
   Estimator(const EstimatorConfig& config, const Zeta& initial);
 
-  /// One tick of `h_s`: from the state at t_k to the state at t_k + h.
-  void Update(const Neighbours& neighbours, double h_s);
-
-  /// Missed ticks: the own prediction `ahead_s` on, without neighbours.
-  void Coast(double ahead_s);
+  /// One tick: from the state at the end of the last one, `missed_s` ago, to the state `h_s` from now.
+  void Update(const Neighbours& neighbours, double h_s, double missed_s = 0.0);
 
   /// The estimate at the time of the last Update's end.
   const Zeta& zeta() const { return zeta_; }
@@ -81,16 +86,23 @@ class Estimator {
   bool in_band() const { return in_band_; }
   /// Number of ticks for which this node, and every node up to that many hops upstream, was in its band.
   int agreement() const { return agreement_; }
-  /// The estimate may be used for motion. Latched, until out of the band for `desync_ticks`.
+  /// Age of the newest leader state behind the estimate, at the end of the tick; infinite for none. It grows
+  /// hop by hop and tick by tick, so that a leader lost far away, or a cycle that feeds on itself, is noticed
+  /// here.
+  double leader_age_s() const { return leader_age_s_; }
+  /// The estimate may be used for motion. Latched, until out of the band for `desync_ticks`; without a
+  /// neighbour that counts as heard there is no band.
   bool synced() const { return synced_; }
 
  private:
+  bool CountsAsHeard(const Neighbour& neighbour) const;
   void UpdateAgreement(const Neighbours& neighbours);
 
   EstimatorConfig config_;
   Zeta zeta_;
   bool in_band_ = false;
   int agreement_ = 0;
+  double leader_age_s_ = std::numeric_limits<double>::infinity();
   int ticks_out_of_band_ = 0;
   bool synced_ = false;
 };

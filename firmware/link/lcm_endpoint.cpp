@@ -72,12 +72,12 @@ std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, std::string* e
     return fail(std::string("cannot set up the socket: ") + std::strerror(errno));
   if (!Join(socket, group)) {
     const bool no_route = errno == ENODEV || errno == ENETUNREACH;
-    return fail(std::string("cannot join the group: ") + std::strerror(errno) +
-                (no_route
-                     ? "; this host has no route for multicast. Make one with `ip link set lo multicast on; "
-                       "ip route add 224.0.0.0/4 dev lo` as root, or start with `armada run`, which makes a "
-                       "private network"
-                     : ""));
+    return fail(
+        std::string("cannot join the group: ") + std::strerror(errno) +
+        (no_route ? "; this host has no route for multicast. Make one with `ip link set lo up multicast on; "
+                    "ip route add 224.0.0.0/4 dev lo` as root, or start with `armada run`, which makes a "
+                    "private network"
+                  : ""));
   }
   return endpoint;
 }

@@ -31,6 +31,7 @@ Traffic ODriveTraffic(const JointDriveConfig& joint, double feedback_period_s) {
 Traffic JointTraffic(DriveProfile profile, const JointDriveConfig& joint, double feedback_period_s) {
   switch (profile) {
     case DriveProfile::kODriveCanSimple:
+    case DriveProfile::kODriveCanSimpleV05:
       return ODriveTraffic(joint, feedback_period_s);
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -33,6 +34,20 @@ int Fail(const std::string& message) {
   return kExitFailed;
 }
 
+// What an earlier run left must not pass for a result of this one.
+void RemoveEarlierRun(const fs::path& directory) {
+  std::error_code ignored;
+  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "leader.csv", "lcm.log",
+                           "report", "without_subtask"}) {
+    fs::remove_all(directory / name, ignored);
+  }
+  for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("arm_") || name.starts_with("can_") || name.starts_with("initial_"))
+      fs::remove(entry.path(), ignored);
+  }
+}
+
 /// One run of a scenario as processes.
 class Run {
  public:
@@ -49,6 +64,7 @@ class Run {
   bool StartAll(ProcessGroup* group, std::string* error);
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
+  bool FinishedItsRun(const ProcessExit& ended) const;
   void ShowProgress();
   std::string Program(const char* name) const {
     return (fs::path(options_.program_directory) / name).string();
@@ -72,30 +88,31 @@ bool Run::WriteInputs(std::string* error) {
     *error = "cannot create " + out_.string() + ": " + code.message();
     return false;
   }
-  // What an earlier run left must not pass for a result of this one.
-  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "lcm.log"})
-    fs::remove(out_ / name, code);
-  for (const char* name : {"report", "without_subtask"}) fs::remove_all(out_ / name, code);
-
+  RemoveEarlierRun(out_);
   if (!WriteEffective(scenario_, out_.string(), error)) return false;
   std::optional<LeaderPath> leader;
   if (scenario_.leader.kind != LeaderKind::kNone) leader.emplace(scenario_.leader);
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, options_.seed, leader ? &*leader : nullptr);
     const std::string id = std::to_string(scenario_.fleet.arms[i].id);
-    fs::remove(out_ / ("arm_" + id + ".json"), code);
     if (!WriteInitialState(start.controller, In("initial_" + id + ".toml"), error)) return false;
   }
   return true;
 }
 
 bool Run::Prepare(std::string* error) {
+  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  if (!url) return false;
   if (!HasMulticastRoute()) {
+    if (url->ttl > 0) {
+      *error = "no multicast route here, and link.lcm_url has ttl=" + std::to_string(url->ttl) +
+               ": other boards could not be heard; add a route: ip route add 224.0.0.0/4 dev <interface>";
+      return false;
+    }
     if (!EnterPrivateNetwork(error)) return false;
     std::cout << "no multicast route here: running in a private network namespace\n";
   }
-  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
-  link_ = url ? LcmEndpoint::Open(*url, error) : nullptr;
+  link_ = LcmEndpoint::Open(*url, error);
   return link_ != nullptr && WriteInputs(error);
 }
 
@@ -160,6 +177,14 @@ void Run::ShowProgress() {
   std::fflush(stdout);
 }
 
+// A board that ended in FAULT exits with 1, but has done its run and reported: that is a result, not a crash.
+bool Run::FinishedItsRun(const ProcessExit& ended) const {
+  return std::any_of(scenario_.fleet.arms.begin(), scenario_.fleet.arms.end(), [&](const ArmEntry& arm) {
+    return ended.name == "arm " + std::to_string(arm.id) &&
+           fs::exists(out_ / ("arm_" + std::to_string(arm.id) + ".json"));
+  });
+}
+
 bool Run::Watch(ProcessGroup* group, std::string* error) {
   const int64_t end_ns = epoch_ns_ + static_cast<int64_t>((scenario_.seconds + kOverrun_s) * 1e9);
   const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
@@ -169,7 +194,7 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
     const auto ended = group->Poll(milliseconds(5));
     link_->Drain([&](const LcmMessage& message) { recorder_->OnMessage(message); });
     if (ended) {
-      if (!ended->Succeeded() || ended->name == "lcm-logger") {
+      if ((!ended->Succeeded() && !FinishedItsRun(*ended)) || ended->name == "lcm-logger") {
         *error = ended->Describe();
         return false;
       }
@@ -231,7 +256,7 @@ int RunRunCommand(const RunOptions& options) {
   nlohmann::ordered_json json;
   if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {
     const int code = Fail(error);
-    return run.interrupted() ? 130 : code;
+    return run.interrupted() ? kExitInterrupted : code;
   }
   PrintArmTable(metrics, std::cout);
   PrintProcessTable(json, std::cout);

@@ -64,6 +64,7 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
       ArmMetrics arm = recorder.Metrics(i);
       TakeTracking(hil->at("arms").at(i), recorder.Tracking(i), &arm);
       arm.state = board->at("state").get<std::string>();
+      arm.faults = board->at("faults").get<std::vector<std::string>>();
       metrics->arms.push_back(std::move(arm));
       boards.push_back(*board);
     }

@@ -89,20 +89,29 @@ void Simulation::Exchange(int64_t k) {
     // The newest state on the leader's own grid.
     const double rate_hz = scenario_.leader.rate_hz;
     const double t_s = std::floor(TimeOf(k) * rate_hz + 1e-6) / rate_hz;
-    const Zeta zeta = leader_->At(t_s);
-    leader_t message{};
-    message.stamp_ns = epoch_ns_ + std::llround(t_s * 1e9);
-    message.sequence = ++leader_sequence_;
-    message.path_time_s = t_s;
-    message.task_dim = PlanarArm::kTaskDim;
-    Copy(zeta.x_m, message.x_m);
-    Copy(zeta.v_m_s, message.v_m_s);
-    Copy(zeta.a_m_s2, message.a_m_s2);
-    network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
+    if (leader_sequence_ > 0 && t_s == leader_sent_s_) {
+      network_.Send(0, k, {});  // nothing new from a leader slower than the ticks
+    } else {
+      SendLeader(k, t_s);
+    }
   }
   for (size_t i = 0; i < arms_.size(); ++i) {
     network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
   }
+}
+
+void Simulation::SendLeader(int64_t k, double t_s) {
+  leader_sent_s_ = t_s;
+  const Zeta zeta = leader_->At(t_s);
+  leader_t message{};
+  message.stamp_ns = epoch_ns_ + std::llround(t_s * 1e9);
+  message.sequence = ++leader_sequence_;
+  message.path_time_s = t_s;
+  message.task_dim = PlanarArm::kTaskDim;
+  Copy(zeta.x_m, message.x_m);
+  Copy(zeta.v_m_s, message.v_m_s);
+  Copy(zeta.a_m_s2, message.a_m_s2);
+  network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
 }
 
 // One tick of one board, in the order of the real process.
@@ -226,6 +235,7 @@ RunMetrics Simulation::Result() const {
     if (result.subtask == SubtaskKind::kPosture)
       result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
     result.state = NameOf(arm.node.state());
+    if (arm.node.fault() != FaultCause::kNone) result.faults.emplace_back(NameOf(arm.node.fault()));
     metrics.arms.push_back(std::move(result));
   }
   metrics.Judge(scenario_.criterion);

@@ -36,6 +36,7 @@ class Simulation {
 
   void BringUp();
   void Exchange(int64_t k);
+  void SendLeader(int64_t k, double t_s);
   void Control(Arm& arm, size_t index, int64_t k);
   /// Frames from the drives to the board, and what it sends to the drives.
   void ToBoard(Arm& arm, int64_t t_ns);
@@ -61,6 +62,7 @@ class Simulation {
   FrameList to_board_;
   FrameList to_drives_;
   int64_t leader_sequence_ = 0;
+  double leader_sent_s_ = 0.0;
   double estimate_spread_m_ = 0.0;
 };
 

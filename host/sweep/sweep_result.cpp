@@ -22,10 +22,16 @@ Distribution DistributionOf(std::vector<Sample> samples) {
     const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(samples.size())));
     return samples[std::clamp<size_t>(rank, 1, samples.size()) - 1].value;
   };
-  return {at(0.5), at(0.95), at(0.999), samples.back().value, samples.back().seed};
+  return {static_cast<int64_t>(samples.size()),
+          at(0.5),
+          at(0.95),
+          at(0.999),
+          samples.back().value,
+          samples.back().seed};
 }
 
 Json ToJson(const Distribution& distribution) {
+  if (distribution.count == 0) return nullptr;
   return {{"median", distribution.median},
           {"p95", distribution.p95},
           {"p99.9", distribution.p999},

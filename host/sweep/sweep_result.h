@@ -29,6 +29,7 @@ struct SeedResult {
 
 /// Median and tails of one figure over the seeds.
 struct Distribution {
+  int64_t count = 0;  ///< seeds in it; without one the rest means nothing
   double median = 0.0;
   double p95 = 0.0;
   double p999 = 0.0;
@@ -48,8 +49,9 @@ struct SweepArmSummary {
 struct SweepSummary {
   int64_t count = 0;
   int64_t ok_count = 0;
-  std::optional<double> fleet_rms_mm;  ///< root of the mean square over the fleets that are ok; none without one
-  Distribution fleet_rms_all_mm;       ///< fleet RMS of every fleet, ok or not
+  std::optional<double>
+      fleet_rms_mm;                ///< root of the mean square over the fleets that are ok; none without one
+  Distribution fleet_rms_all_mm;   ///< fleet RMS of every fleet, ok or not
   double estimator_rms_x_m = 0.0;  ///< the same over all fleets and arms
   std::vector<SweepArmSummary> arms;
   std::vector<uint64_t> failed_seeds;

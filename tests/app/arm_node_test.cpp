@@ -73,7 +73,7 @@ class Board : public testing::Test {
   void Tick(int64_t k) {
     node_.RequestSamples(NanosecondsOf(k), &to_drives_);
     Carry(k);
-    SendLeader(k);
+    if (!silent_) SendLeader(k);
     node_.Step(NanosecondsOf(k), &to_drives_);
     Carry(k);
     Advance(k + 1);
@@ -87,6 +87,7 @@ class Board : public testing::Test {
   FrameList to_drives_, to_board_;
   MessageBuffer buffer_{};
   bool ready_ = false;
+  bool silent_ = false;   ///< the leader is
   uint32_t deaf_to_ = 0;  ///< node whose frames are lost on the way to the board
 };
 
@@ -117,6 +118,34 @@ TEST_F(Board, StopsForGoodWhenAJointStaysSilent) {
   for (int64_t k = 9; k < 40; ++k) Tick(k);
   EXPECT_EQ(node_.state(), ControllerState::kFault) << "nothing re-arms by itself";
   EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
+TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
+  for (int64_t k = 0; k < 200; ++k) Tick(k);
+  deaf_to_ = 2;
+  for (int64_t k = 200; k < 300; ++k) Tick(k);
+  ASSERT_EQ(node_.state(), ControllerState::kFault);
+  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackStale);
+  estimate_t estimate;
+  ASSERT_TRUE(Decode(node_.EncodeEstimate(NanosecondsOf(300), &buffer_), &estimate));
+  EXPECT_EQ(estimate.stamp_ns, NanosecondsOf(300));
+  EXPECT_GT(estimate.agreement, 100);
+  const Zeta truth = leader_.At(TimeOf(300));
+  EXPECT_NEAR(estimate.x_m[0], truth.x_m[0], 1e-4);
+  telemetry_t telemetry{};
+  node_.FillTelemetry(&telemetry);
+  EXPECT_EQ(telemetry.tau_Nm[0], 0.0);
+  EXPECT_EQ(telemetry.stamp_ns, NanosecondsOf(299));
+}
+
+TEST_F(Board, BrakesWhenTheLeaderFallsSilent) {
+  for (int64_t k = 0; k < 400; ++k) Tick(k);
+  ASSERT_TRUE(node_.controller().estimator().synced());
+  silent_ = true;
+  for (int64_t k = 400; k < 600; ++k) Tick(k);
+  EXPECT_FALSE(node_.controller().estimator().synced());
+  EXPECT_EQ(node_.state(), ControllerState::kRun);
+  for (size_t i = 0; i < 2; ++i) EXPECT_LT(std::abs(bench_.plant().dq_rad_s[i]), 0.5) << "joint " << i + 1;
 }
 
 TEST_F(Board, WithoutDrivesInTorqueModeSendsNoTorque) {

@@ -24,14 +24,14 @@ class EstimatorNetwork {
     const std::vector<Estimator> before = nodes_;
     for (int i = 0; i < graph_.node_count(); ++i) {
       Neighbours heard;
-      const auto add = [&](double weight, const Zeta& zeta, int agreement) {
+      const auto add = [&](double weight, const Zeta& zeta, int agreement, double leader_age_s) {
         if (weight > 0.0)
-          heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true};
+          heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true, leader_age_s};
       };
-      add(graph_.pin(i), leader, Estimator::kMaxAgreement);
+      add(graph_.pin(i), leader, Estimator::kMaxAgreement, 0.0);
       for (int j = 0; j < graph_.node_count(); ++j) {
         const Estimator& other = before[static_cast<size_t>(j)];
-        add(graph_.weight(i, j), other.zeta(), other.agreement());
+        add(graph_.weight(i, j), other.zeta(), other.agreement(), other.leader_age_s());
       }
       nodes_[static_cast<size_t>(i)].Update(heard, h_s);
     }

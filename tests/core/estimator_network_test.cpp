@@ -226,5 +226,37 @@ TEST(EstimatorNetwork, SwitchingTopologiesThatEachReachAllKeepTheLeader) {  // C
   }
 }
 
+TEST(EstimatorNetwork, ALostLeaderIsNoticedByEveryArmOfAChain) {
+  const EstimatorConfig config;
+  Digraph chain(4);
+  chain.SetPin(0, 1.0);
+  for (int i = 1; i < 4; ++i) chain.SetWeight(i, i - 1, 1.0);
+  const Zeta leader = Zeta::Zero(2);
+  EstimatorNetwork network(config, chain, std::vector<Zeta>(4, leader));
+  for (int k = 0; k < 50; ++k) network.Tick(leader, 0.01);
+  for (const Estimator& node : network.nodes()) ASSERT_TRUE(node.synced());
+  chain.SetPin(0, 0.0);  // the first arm hears nobody now, the others still hear each other
+  network.Switch(chain);
+  const int ticks = static_cast<int>(config.age_max_s / 0.01) + config.desync_ticks + 4;
+  for (int k = 0; k < ticks; ++k) network.Tick(leader, 0.01);
+  for (const Estimator& node : network.nodes()) EXPECT_FALSE(node.synced());
+}
+
+TEST(EstimatorNetwork, ACycleDoesNotFeedOnItselfWhenTheLeaderIsLost) {
+  const EstimatorConfig config;
+  Digraph cycle(3);
+  cycle.SetPin(0, 1.0);
+  for (int i = 0; i < 3; ++i) cycle.SetWeight(i, (i + 2) % 3, 1.0);
+  const Zeta leader = Zeta::Zero(2);
+  EstimatorNetwork network(config, cycle, std::vector<Zeta>(3, leader));
+  for (int k = 0; k < 50; ++k) network.Tick(leader, 0.01);
+  for (const Estimator& node : network.nodes()) ASSERT_TRUE(node.synced());
+  cycle.SetPin(0, 0.0);
+  network.Switch(cycle);
+  const int ticks = static_cast<int>(config.age_max_s / 0.01) + config.desync_ticks + 4;
+  for (int k = 0; k < ticks; ++k) network.Tick(leader, 0.01);
+  for (const Estimator& node : network.nodes()) EXPECT_FALSE(node.synced());
+}
+
 }  // namespace
 }  // namespace armada

@@ -60,7 +60,7 @@ TEST(Estimator, PaperKindIsExplicitEulerOf1_9) {
     neighbours.count = 1 + step % 5;
     for (int j = 0; j < neighbours.count; ++j) {
       // The age is not used: the paper knows no delay.
-      neighbours.list[static_cast<size_t>(j)] = {random.In(0.1, 3.0), RandomZeta(random), 0.3, 5, true};
+      neighbours.list[static_cast<size_t>(j)] = {random.In(0.1, 3.0), RandomZeta(random), 0.15, 5, true};
     }
     Zeta expected = own;
     const auto euler = [&](TaskVector Zeta::*block, double beta) {
@@ -192,8 +192,8 @@ TEST(Estimator, CoastOverMissedTicksIsTheOwnPrediction) {
   const Zeta own = RandomZeta(random);
   for (const EstimatorKind kind : kAllKinds) {
     Estimator estimator(Config(kind), own);
-    estimator.Coast(0.03);
-    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, 0.03) : own, 0.0);
+    estimator.Update(Neighbours{}, kH_s, 0.03);
+    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, 0.03 + kH_s) : own, 0.0);
   }
 }
 
@@ -230,23 +230,39 @@ TEST(Estimator, IsNotSyncedWhileANeighbourInUseIsUnheard) {
 
 TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
   EstimatorConfig config = Config(EstimatorKind::kPredictive);
-  config.desync_ticks = 5;
+  config.sync_ticks = 3;
+  config.desync_ticks = 8;
   Estimator estimator(config, ZetaOf(1.0));
   const Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
   const auto tick = [&](const Neighbours& heard, int count) {
     for (int k = 0; k < count; ++k) estimator.Update(heard, kH_s);
   };
-  tick(leader, 5);
+  tick(leader, config.sync_ticks);
   ASSERT_TRUE(estimator.synced());
   tick(Neighbours{}, 4);
+  tick(leader, config.sync_ticks);  // agreement is back: the count begins anew
   EXPECT_TRUE(estimator.synced());
-  tick(leader, 1);  // the count begins anew
-  tick(Neighbours{}, 4);
+  tick(Neighbours{}, config.desync_ticks - 1);
   EXPECT_TRUE(estimator.synced());
   tick(Neighbours{}, 1);
   EXPECT_FALSE(estimator.synced());
   tick(leader, config.sync_ticks);
   EXPECT_TRUE(estimator.synced());
+}
+
+TEST(Estimator, ANeighbourSilentForTooLongIsNotHeardAnyMore) {
+  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  Estimator estimator(config, ZetaOf(1.0));
+  Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
+  for (int k = 0; k < config.sync_ticks; ++k) estimator.Update(leader, kH_s);
+  ASSERT_TRUE(estimator.synced());
+  leader.list[0].age_s = config.age_max_s;
+  estimator.Update(leader, kH_s);
+  EXPECT_GT(estimator.agreement(), 0) << "the bound itself is allowed";
+  leader.list[0].age_s = 1.001 * config.age_max_s;
+  for (int k = 0; k < config.desync_ticks; ++k) estimator.Update(leader, kH_s);
+  EXPECT_EQ(estimator.agreement(), 0);
+  EXPECT_FALSE(estimator.synced());
 }
 
 TEST(Estimator, AgreementStopsAtItsMaximum) {

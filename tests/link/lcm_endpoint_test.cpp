@@ -29,7 +29,7 @@ TEST_F(Endpoint, SaysWhatToDoWhenThereIsNoMulticastRoute) {
   WithoutRoutes([] {
     std::string error;
     EXPECT_EQ(LcmEndpoint::Open(LcmUrl(), &error), nullptr);
-    for (const char* part : {"udpm://239.255.76.67:7667?ttl=0", "ip link set lo multicast on",
+    for (const char* part : {"udpm://239.255.76.67:7667?ttl=0", "ip link set lo up multicast on",
                              "ip route add 224.0.0.0/4 dev lo", "armada run"}) {
       EXPECT_NE(error.find(part), std::string::npos) << error;
     }

@@ -42,7 +42,8 @@ constexpr auto EnumNames(SubtaskKind) {
 
 constexpr auto EnumNames(DriveProfile) {
   return std::to_array<std::pair<DriveProfile, std::string_view>>(
-      {{DriveProfile::kODriveCanSimple, "odrive_cansimple"}});
+      {{DriveProfile::kODriveCanSimple, "odrive_cansimple"},
+       {DriveProfile::kODriveCanSimpleV05, "odrive_cansimple_v05"}});
 }
 
 template <class Enum>

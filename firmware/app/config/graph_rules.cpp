@@ -57,11 +57,22 @@ bool CheckParts(const FleetLayout& fleet, const GraphLayout& graph, const Config
 void CheckA1(const FleetConfig& fleet, size_t topology, const ConfigCursor& at, Errors* errors) {
   const auto depth = fleet.Graph(topology).DepthFromLeader();
   std::string unreached;
+  int deepest = 0;
   for (size_t i = 0; i < fleet.arms.size(); ++i) {
+    deepest = std::max(deepest, depth[i]);
     if (depth[i] != Digraph::kUnreachable) continue;
     unreached += (unreached.empty() ? "" : ", ") + std::to_string(fleet.arms[i].id);
   }
-  if (unreached.empty()) return;
+  if (unreached.empty()) {
+    // Agreement sees as many hops upstream as it counts: the leader's loss must be seen by the last arm.
+    if (fleet.estimator.sync_ticks <= deepest) {
+      Report(at,
+             "an arm is " + std::to_string(deepest) + " hops from the leader, given estimator.sync_ticks = " +
+                 std::to_string(fleet.estimator.sync_ticks) + "; allowed is more than the hops",
+             errors);
+    }
+    return;
+  }
   Report(at,
          "the leader does not reach arm " + unreached +
              "; assumption A1 asks for a path of pins and edges to every arm",
