@@ -1,6 +1,7 @@
 #include "firmware/app/arm_loop.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware/app/heap_counter.h"
 #include "firmware/app/realtime.h"
@@ -9,7 +10,7 @@ namespace armada {
 namespace {
 
 int64_t Nanoseconds(double seconds) {
-  return static_cast<int64_t>(seconds * 1e9 + 0.5);
+  return std::llround(seconds * 1e9);
 }
 
 int32_t Microseconds(int64_t duration_ns) {

@@ -88,7 +88,7 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   const bool started = controller_.zeta_time_s() > 0.0;
   estimate_t message{};
   message.stamp_ns =
-      started ? epoch_ns_ + static_cast<int64_t>(controller_.zeta_time_s() * 1e9 + 0.5) : tick_ns;
+      started ? epoch_ns_ + std::llround(controller_.zeta_time_s() * 1e9) : tick_ns;
   message.sequence = ++estimate_sequence_;
   message.arm_id = static_cast<int8_t>(id_);
   message.task_dim = PlanarArm::kTaskDim;
@@ -244,7 +244,7 @@ void ArmNode::FillTelemetry(telemetry_t* telemetry) {
   const ArmStatus& status = controller_.status();
   const ParameterVector& theta_hat = controller_.theta_hat();
   const JointVector d_hat_Nm = controller_.d_hat_Nm();
-  telemetry->stamp_ns = epoch_ns_ + static_cast<int64_t>(input_.sample_s * 1e9 + 0.5);
+  telemetry->stamp_ns = epoch_ns_ + std::llround(input_.sample_s * 1e9);
   telemetry->sequence = ++telemetry_sequence_;
   telemetry->arm_id = static_cast<int8_t>(id_);
   telemetry->dof = static_cast<int8_t>(drives_.size());
