@@ -36,6 +36,7 @@ class Runner {
 
   std::vector<SeedResult> Run(int jobs, bool progress) {
     std::vector<std::thread> threads;
+    threads.reserve(static_cast<size_t>(jobs));
     for (int i = 0; i < jobs; ++i) threads.emplace_back([this] { Work(); });
     if (progress) ShowProgress();
     for (std::thread& thread : threads) thread.join();
@@ -160,7 +161,7 @@ int RunSweepMergeCommand(const std::vector<std::string>& files, const std::strin
     const auto parsed = nlohmann::ordered_json::parse(file, nullptr, false);
     const auto shard =
         parsed.is_discarded() ? (error = "not JSON", std::nullopt) : SweepFromJson(parsed, &error);
-    if (!shard) return Usage(path + ": " + error);
+    if (!shard) return Usage(std::string(path).append(": ").append(error));
     shards.push_back(*shard);
   }
   std::string error;

@@ -158,12 +158,12 @@ TEST_F(Endpoint, DeliversEveryMessageThroughAStormOfJunkWithoutAllocating) {
     endpoint->Drain(count);
   }
   const LcmCounters& counters = endpoint->counters();
-  while (counters.received + counters.malformed < kTicks * (kJunkPerTick + kMessagesPerTick)) {
+  while (counters.received + counters.malformed < uint64_t{kTicks} * (kJunkPerTick + kMessagesPerTick)) {
     WaitForInput(*endpoint);  // the kernel may have been late with the last tick's
     ASSERT_GT(endpoint->Drain(count), 0);
   }
   EXPECT_EQ(delivered, kTicks * kMessagesPerTick);
-  EXPECT_EQ(counters.malformed, uint64_t{kTicks * kJunkPerTick});
+  EXPECT_EQ(counters.malformed, uint64_t{kTicks} * kJunkPerTick);
   EXPECT_EQ(counters.overflowed, 0U);
 }
 
