@@ -87,8 +87,7 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   const Zeta& zeta = controller_.zeta();
   const bool started = controller_.zeta_time_s() > 0.0;
   estimate_t message{};
-  message.stamp_ns =
-      started ? epoch_ns_ + std::llround(controller_.zeta_time_s() * 1e9) : tick_ns;
+  message.stamp_ns = started ? epoch_ns_ + std::llround(controller_.zeta_time_s() * 1e9) : tick_ns;
   message.sequence = ++estimate_sequence_;
   message.arm_id = static_cast<int8_t>(id_);
   message.task_dim = PlanarArm::kTaskDim;
