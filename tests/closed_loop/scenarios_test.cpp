@@ -7,7 +7,7 @@ namespace armada {
 namespace {
 
 TEST(PaperScenario, EveryFleetFromTheBoxTracksWithOneMillisecondLatency) {
-  for (const uint64_t seed : {1, 2, 3}) {
+  for (const uint64_t seed : {1U, 2U, 3U}) {
     const RunMetrics metrics = Simulate("paper", seed);
     EXPECT_TRUE(metrics.ok) << "seed " << seed;
     EXPECT_LT(metrics.fleet_rms_m, 1.05e-3) << "seed " << seed;
