@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hil/odrive_emulator.h"
 #include "hil/random.h"
 
 namespace armada {
@@ -24,12 +23,9 @@ EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t 
       start_s_(start_s) {
   plant_.q_rad = start.q_rad;
   const ArmEntry& entry = scenario.fleet.arms[index];
-  EmulatedDriveConfig drive = scenario.drive;
-  drive.firmware =
-      entry.profile == DriveProfile::kODriveCanSimpleV05 ? odrive::Firmware::kV05 : odrive::Firmware::kV06;
   for (size_t i = 0; i < entry.joints.size(); ++i) {
     const uint64_t sensor_seed = RandomBits(seed, kSensorStream, static_cast<uint64_t>(entry.id), i);
-    drives_.push_back(std::make_unique<ODriveEmulator>(entry.joints[i], drive, sensor_seed));
+    drives_.push_back(MakeEmulatedDrive(entry.joints[i], scenario.drive, sensor_seed));
   }
 }
 

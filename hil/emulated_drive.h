@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "firmware/can/frame_list.h"
-#include "firmware/can/odrive_messages.h"
+#include "firmware/can/joint_drive_config.h"
 
 namespace armada {
 
@@ -13,12 +15,11 @@ struct JointTruth {
 
 /// What an emulated drive is like, besides its JointDriveConfig.
 struct EmulatedDriveConfig {
-  odrive::Firmware firmware = odrive::Firmware::kV06;  ///< not in a file: it follows the arm's profile
-  double latency_s = 0.001;                            ///< from a command's frame to its torque
-  double encoder_counts_per_turn = 0;                  ///< of the motor; 0: continuous
-  double velocity_noise_rad_s = 0.0;                   ///< standard deviation, joint side
-  double feedback_period_s = 0.0;                      ///< of the cyclic estimates; 0: on request only
-  double watchdog_s = 0.03;                            ///< 0: off
+  double latency_s = 0.001;            ///< from a command's frame to its torque
+  double encoder_counts_per_turn = 0;  ///< of the motor; 0: continuous
+  double velocity_noise_rad_s = 0.0;   ///< standard deviation, joint side
+  double feedback_period_s = 0.0;      ///< of what the drive sends by itself; 0: on request only
+  double watchdog_s = 0.03;            ///< as set in drives whose protocol cannot set it; 0: off
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -28,9 +29,12 @@ struct EmulatedDriveConfig {
     parameter(
         {"velocity_noise_rad_s", "rad/s", 0, 10, "standard deviation of the velocity estimate, joint side"},
         velocity_noise_rad_s);
-    parameter({"feedback_period_s", "s", 0, 1, "period of the cyclic encoder estimates; 0: on request only"},
+    parameter({"feedback_period_s", "s", 0, 1,
+               "ODrive: period of the cyclic encoder estimates; 0: on request only"},
               feedback_period_s);
-    parameter({"watchdog_s", "s", 0, 10, "silence after which the drive disarms; 0: off"}, watchdog_s);
+    parameter({"watchdog_s", "s", 0, 10,
+               "silence after which the drive disarms, in drives whose protocol cannot set it; 0: off"},
+              watchdog_s);
   }
 };
 
@@ -63,5 +67,9 @@ class EmulatedDrive {
   /// True while the drive's power stage is on.
   virtual bool ProducesTorque() const = 0;
 };
+
+/// The drive that speaks the joint's profile. `seed`: of the sensor's noise.
+std::unique_ptr<EmulatedDrive> MakeEmulatedDrive(const JointDriveConfig& joint,
+                                                 const EmulatedDriveConfig& config, uint64_t seed);
 
 }  // namespace armada

@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -30,6 +31,7 @@ constexpr int64_t kLongestWaitNs = 3600 * kStartUpNs;  // beyond it the number i
 struct Options {
   std::string scenario;
   std::vector<std::string> sets;
+  std::vector<std::string> buses;  // <arm>=<bus>
   uint64_t seed = 1;
   int64_t epoch_ns = 0;  // 0: one second after the benches are switched on
   double seconds = 0.0;  // 0: the scenario's
@@ -47,8 +49,27 @@ int Fail(const std::string& message) {
 
 bool OpenBuses(const FleetConfig& fleet, Buses* buses, std::string* error) {
   for (const ArmEntry& arm : fleet.arms) {
-    buses->push_back(OpenBus(arm.bus, error));
+    BusOptions options = BusOptionsOf(arm);
+    options.filters.clear();  // the logs show all that is on the bus
+    buses->push_back(OpenBus(arm.bus, options, error));
     if (buses->back() == nullptr) return false;
+  }
+  return true;
+}
+
+// The emulation's end of a bus may have another name than the board's, as with two cards in one computer.
+bool RenameBuses(const std::vector<std::string>& assignments, FleetConfig* fleet, std::string* error) {
+  for (const std::string& text : assignments) {
+    const size_t sign = text.find('=');
+    const auto arm = std::find_if(fleet->arms.begin(), fleet->arms.end(), [&](const ArmEntry& entry) {
+      return std::to_string(entry.id) == text.substr(0, sign);
+    });
+    if (sign == std::string::npos || arm == fleet->arms.end()) {
+      *error = "--bus " + text + ": must be <arm>=<bus> with an arm of the fleet, such as " +
+               std::to_string(fleet->arms.front().id) + "=socketcan:can1";
+      return false;
+    }
+    arm->bus = text.substr(sign + 1);
   }
   return true;
 }
@@ -122,20 +143,24 @@ int WriteResults(const HilReport& report, const Logs& logs, const std::string& d
 
 int Run(const Options& options) {
   std::vector<ConfigError> errors;
-  const auto scenario = LoadScenario(options.scenario, options.sets, &errors);
+  auto scenario = LoadScenario(options.scenario, options.sets, &errors);
   if (!scenario) {
     PrintErrors(errors, std::cerr);
     return kExitBadConfig;
   }
 
   std::string error;
+  if (!RenameBuses(options.buses, &scenario->fleet, &error)) {
+    std::cerr << "armada-hil: " << error << '\n';
+    return kExitUsage;
+  }
   Buses buses;
   if (!OpenBuses(scenario->fleet, &buses, &error)) return Fail(error);
   const auto clock = PollClock::Create(buses, &error);
   if (clock == nullptr) return Fail(error);
-  if (const auto drive = FindActiveDrive(buses, kListenNs, clock.get())) {
+  if (const auto drive = FindActiveDrive(scenario->fleet, buses, kListenNs, clock.get())) {
     return Fail("bus " + scenario->fleet.arms[drive->bus].bus +
-                ": another emulation or drive is already active (heartbeat of node " +
+                ": another emulation or drive is already active (frames of node " +
                 std::to_string(drive->node_id) + ")");
   }
   Logs logs;
@@ -173,6 +198,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.001, 1e6));
   app.add_option("--set", options.sets,
                  "key=value in place of the scenario's or the fleet's; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--bus", options.buses,
+                 "ARM=BUS: open this in place of the bus that the fleet names; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--out", options.out, "directory for hil.json and can_<id>.log");
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")

@@ -28,10 +28,12 @@ Json OrNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json ToJson(const BusCounters& counters) {
-  return {{"can_sent", counters.sent},
+Json ToJson(const BusCounters& counters, double load) {
+  return {{"can_load", load},
+          {"can_sent", counters.sent},
           {"can_received", counters.received},
-          {"can_dropped", counters.dropped_queue_full},
+          {"can_dropped", counters.dropped_queue_full + counters.dropped_late},
+          {"can_receive_overflowed", counters.receive_overflowed},
           {"can_malformed", counters.malformed},
           {"can_errors", counters.errors}};
 }
@@ -53,7 +55,7 @@ Json ToJson(const HilArmResult& arm, const CanLog& log) {
           {"max_mm", measured ? Json(arm.record->max_m() * 1e3) : Json(nullptr)},
           {"samples", arm.record ? arm.record->count() : 0},
           {"bus_name", arm.bus},
-          {"bus", ToJson(arm.counters)},
+          {"bus", ToJson(arm.counters, arm.bus_load)},
           {"can_log", ToJson(log)}};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/can/frame_time.h"
+
 namespace armada {
 namespace {
 
@@ -39,6 +41,7 @@ HilServer::HilServer(const ScenarioConfig& scenario, uint64_t seed, int64_t epoc
                      .log = logs.empty() ? nullptr : logs[i],
                      .bench = EmulatedArm(scenario, i, seed, start, leader, FleetTime(start_ns)),
                      .record = TrackingRecord(scenario),
+                     .can = entry.can,
                      .time_ns = start_ns,
                      .next_tick_ns = next_tick_ns_,
                      .released_s = std::nullopt});
@@ -66,10 +69,11 @@ void HilServer::TakeFrames(Arm& arm, int64_t end_ns) {
   for (int i = 0; i < kMostFramesInTurn; ++i) {
     const BusStatus status = arm.bus->Receive(0, &frame);
     if (status == BusStatus::kDown) arm.bus_down = true;
-    if (status != BusStatus::kOk) return;
+    if (status == BusStatus::kTimeout || status == BusStatus::kDown) return;
+    if (status != BusStatus::kOk || frame.error) continue;  // counted; drives do not act on it
     const int64_t t_ns = std::max(arm.time_ns, std::min(frame.stamp_ns, end_ns));
     AdvanceTo(arm, t_ns);
-    if (arm.log != nullptr) arm.log->Record(t_ns, frame);
+    Note(arm, t_ns, frame);
     arm.bench.OnFrame(FleetTime(t_ns), frame, &out_);
     MoveBench(arm, t_ns);
   }
@@ -93,9 +97,14 @@ void HilServer::MoveBench(Arm& arm, int64_t t_ns) {
   for (const CanFrame& frame : out_) {
     const BusStatus status = arm.bus->Send(frame);
     if (status == BusStatus::kDown) arm.bus_down = true;
-    if (status == BusStatus::kOk && arm.log != nullptr) arm.log->Record(t_ns, frame);
+    if (status == BusStatus::kOk) Note(arm, t_ns, frame);
   }
   out_.Clear();
+}
+
+void HilServer::Note(Arm& arm, int64_t t_ns, const CanFrame& frame) const {
+  if (arm.log != nullptr) arm.log->Record(t_ns, frame);
+  if (t_ns > epoch_ns_) arm.on_wire_s += WorstFrameTime_s(frame, arm.can);
 }
 
 void HilServer::Sample(Arm& arm) {
@@ -121,7 +130,8 @@ std::vector<HilArmResult> HilServer::Results() const {
                        .diverged = arm.bench.diverged(),
                        .released_s = arm.released_s,
                        .record = leader_ ? std::optional(arm.record) : std::nullopt,
-                       .counters = arm.bus->counters()});
+                       .counters = arm.bus->counters(),
+                       .bus_load = arm.time_ns > epoch_ns_ ? arm.on_wire_s / FleetTime(arm.time_ns) : 0.0});
   }
   return results;
 }

@@ -28,6 +28,7 @@ struct HilArmResult {
   /// None in a leaderless scenario: there is nothing to measure against.
   std::optional<TrackingRecord> record;
   BusCounters counters;
+  double bus_load = 0.0;  ///< share of the time since the epoch that its frames take on the wire at worst
 };
 
 /// The fleet's arms and drives in real time, on their buses, in one thread. An arm's time goes on with the
@@ -62,10 +63,12 @@ class HilServer {
     CanLog* log;  ///< may be null
     EmulatedArm bench;
     TrackingRecord record;
+    CanBusConfig can;
     int64_t time_ns;  ///< of the bench
     int64_t next_tick_ns;
     std::optional<double> released_s;
     bool bus_down = false;
+    double on_wire_s = 0.0;  ///< of all frames since the epoch
   };
 
   double FleetTime(int64_t t_ns) const { return static_cast<double>(t_ns - epoch_ns_) / 1e9; }
@@ -74,6 +77,8 @@ class HilServer {
   void AdvanceTo(Arm& arm, int64_t t_ns);
   void MoveBench(Arm& arm, int64_t t_ns);
   void Sample(Arm& arm);
+  /// A frame was on the arm's bus.
+  void Note(Arm& arm, int64_t t_ns, const CanFrame& frame) const;
 
   int64_t epoch_ns_;
   HilClock* clock_;

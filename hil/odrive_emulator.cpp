@@ -1,9 +1,7 @@
 #include "hil/odrive_emulator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace armada {
 namespace {
@@ -13,40 +11,17 @@ using odrive::Command;
 using odrive::ControlMode;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-
-/// Standard normal, near enough for noise and the same bits on every machine: the sum of twelve uniform
-/// 16-bit numbers has mean 6 (2^16 - 1), variance 2^32 - 1 and no use for a mathematics library. It ends at
-/// six standard deviations.
-double StandardNormal(std::mt19937_64* random) {
-  uint64_t sum = 0;
-  for (int word = 0; word < 3; ++word) {
-    const uint64_t bits = (*random)();
-    sum += (bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48);
-  }
-  return (static_cast<double>(sum) - 6.0 * 0xFFFF) / 0x10000;
-}
 
 }  // namespace
-
-double ODriveEmulator::Periodic::due_s() const {
-  return period_s > 0.0 ? static_cast<double>(next) * period_s : kNever;
-}
-
-bool ODriveEmulator::Periodic::Take(double t_s) {
-  if (due_s() > t_s) return false;
-  next = std::max(next, static_cast<uint64_t>(t_s / period_s));
-  while (due_s() <= t_s) ++next;  // once or twice: the quotient above is rounded
-  return true;
-}
 
 ODriveEmulator::ODriveEmulator(const JointDriveConfig& joint, const EmulatedDriveConfig& config,
                                uint64_t seed)
     : joint_(joint),
-      config_(config),
-      random_(seed),
-      heartbeat_{kHeartbeatPeriod_s, 0},
-      feedback_{config.feedback_period_s, 0} {}
+      firmware_(odrive::FirmwareOf(joint.profile)),
+      watchdog_s_(config.watchdog_s),
+      sensor_(joint, config.encoder_counts_per_turn, config.velocity_noise_rad_s, seed),
+      torque_(config.latency_s),
+      feedback_(config.feedback_period_s) {}
 
 void ODriveEmulator::OnFrame(double t_s, const CanFrame& frame, const JointTruth& truth, FrameList* out) {
   Command command{};
@@ -64,7 +39,7 @@ void ODriveEmulator::OnFrame(double t_s, const CanFrame& frame, const JointTruth
 
 void ODriveEmulator::OnTime(double t_s, const JointTruth& truth, FrameList* out) {
   CheckWatchdog(t_s);
-  ApplyTorqueChanges(t_s);
+  torque_.Apply(t_s);
   if (heartbeat_.Take(t_s)) SendHeartbeat(out);
   if (feedback_.Take(t_s)) SendEstimates(truth, out);
 }
@@ -72,7 +47,7 @@ void ODriveEmulator::OnTime(double t_s, const JointTruth& truth, FrameList* out)
 void ODriveEmulator::OnDataFrame(double t_s, Command command, const CanFrame& frame) {
   switch (command) {
     case Command::kEstop:
-      error_ |= odrive::EstopError(config_.firmware);
+      error_ |= odrive::EstopError(firmware_);
       state_ = AxisState::kIdle;
       break;
     case Command::kClearErrors:
@@ -101,48 +76,29 @@ void ODriveEmulator::OnDataFrame(double t_s, Command command, const CanFrame& fr
 void ODriveEmulator::CheckWatchdog(double t_s) {
   const double deadline_s = WatchdogDeadline_s();
   if (t_s < deadline_s) return;
-  error_ |= odrive::WatchdogError(config_.firmware);
+  error_ |= odrive::WatchdogError(firmware_);
   state_ = AxisState::kIdle;
-  torque_Nm_ = 0.0;
-  pending_count_ = 0;
+  torque_.Cut();
 }
 
 double ODriveEmulator::WatchdogDeadline_s() const {
-  const bool expired = (error_ & odrive::WatchdogError(config_.firmware)) != 0;
-  return config_.watchdog_s > 0.0 && !expired ? last_fed_s_ + config_.watchdog_s : kNever;
+  const bool expired = (error_ & odrive::WatchdogError(firmware_)) != 0;
+  return watchdog_s_ > 0.0 && !expired ? last_fed_s_ + watchdog_s_ : kNever;
 }
 
 void ODriveEmulator::ScheduleTorque(double t_s) {
   const bool follows = state_ == AxisState::kClosedLoop && mode_.control == ControlMode::kTorque;
-  const double wanted_Nm = follows ? joint_.direction * joint_.gear_ratio * input_torque_Nm_ : 0.0;
-  const double tau_Nm = std::clamp(wanted_Nm, -joint_.torque_limit_Nm, joint_.torque_limit_Nm);
-  ApplyTorqueChanges(t_s);
-  // More commands within one latency than there is room for: the last of them wins.
-  if (pending_count_ == pending_.size()) --pending_count_;
-  pending_[pending_count_++] = {t_s + config_.latency_s, tau_Nm};
-}
-
-void ODriveEmulator::ApplyTorqueChanges(double t_s) {
-  size_t applied = 0;
-  while (applied < pending_count_ && pending_[applied].t_s <= t_s) torque_Nm_ = pending_[applied++].tau_Nm;
-  std::move(pending_.begin() + applied, pending_.begin() + pending_count_, pending_.begin());
-  pending_count_ -= applied;
+  torque_.Schedule(t_s, follows ? JointTorque(joint_, input_torque_Nm_) : 0.0);
 }
 
 double ODriveEmulator::Torque(double t_s) const {
-  if (t_s >= WatchdogDeadline_s()) return 0.0;
-  double tau_Nm = torque_Nm_;
-  for (size_t i = 0; i < pending_count_ && pending_[i].t_s <= t_s; ++i) tau_Nm = pending_[i].tau_Nm;
-  return tau_Nm;
+  return t_s >= WatchdogDeadline_s() ? 0.0 : torque_.At(t_s);
 }
 
 double ODriveEmulator::NextTorqueChange(double t_s) const {
   const double watchdog_s = WatchdogDeadline_s();
-  double next_s = ProducesTorque() && watchdog_s > t_s ? watchdog_s : kNever;
-  for (size_t i = 0; i < pending_count_; ++i) {
-    if (pending_[i].t_s > t_s) return std::min(next_s, pending_[i].t_s);
-  }
-  return next_s;
+  const double next_s = torque_.NextChange(t_s);
+  return ProducesTorque() && watchdog_s > t_s ? std::min(next_s, watchdog_s) : next_s;
 }
 
 double ODriveEmulator::NextEvent(double t_s) const {
@@ -154,20 +110,13 @@ void ODriveEmulator::SendHeartbeat(FrameList* out) const {
   constexpr uint8_t kBusy = 1;
   constexpr uint8_t kDisarmed = 3;
   const uint8_t result = ProducesTorque() ? kBusy : error_ != 0 ? kDisarmed : kSuccess;
-  out->Push(odrive::EncodeHeartbeat(joint_.node_id, config_.firmware, {error_, state_, result}));
+  out->Push(odrive::EncodeHeartbeat(joint_.node_id, firmware_, {error_, state_, result}));
 }
 
 void ODriveEmulator::SendEstimates(const JointTruth& truth, FrameList* out) {
-  const double turns_per_rad = joint_.direction * joint_.gear_ratio / kTurn_rad;
-  const double counts = config_.encoder_counts_per_turn;
-  double position_turns = turns_per_rad * (truth.position_rad - joint_.offset_rad);
-  if (counts > 0.0) position_turns = std::floor(position_turns * counts + 0.5) / counts;
-  double velocity_rad_s = truth.velocity_rad_s;
-  if (config_.velocity_noise_rad_s > 0.0)
-    velocity_rad_s += config_.velocity_noise_rad_s * StandardNormal(&random_);
-  out->Push(odrive::EncodeEncoderEstimates(
-      joint_.node_id,
-      {static_cast<float>(position_turns), static_cast<float>(turns_per_rad * velocity_rad_s)}));
+  const JointSensor::Reading reading = sensor_.Read(truth);
+  out->Push(odrive::EncodeEncoderEstimates(joint_.node_id, {static_cast<float>(reading.position_turns),
+                                                            static_cast<float>(reading.velocity_turns_s)}));
 }
 
 }  // namespace armada

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <random>
 
-#include "firmware/can/joint_drive.h"
 #include "firmware/can/odrive_messages.h"
+#include "hil/delayed_torque.h"
 #include "hil/emulated_drive.h"
+#include "hil/joint_sensor.h"
+#include "hil/periodic.h"
 
 namespace armada {
 
@@ -32,44 +32,27 @@ class ODriveEmulator final : public EmulatedDrive {
   bool ProducesTorque() const override { return state_ == odrive::AxisState::kClosedLoop; }
 
  private:
-  /// A torque [joint side] and the time from which it holds.
-  struct TorqueChange {
-    double t_s = 0.0;
-    double tau_Nm = 0.0;
-  };
-  /// Event k of a periodic kind is due at k period.
-  struct Periodic {
-    double period_s = 0.0;  ///< 0: never
-    uint64_t next = 0;
-
-    double due_s() const;
-    bool Take(double t_s);
-  };
-
   void OnDataFrame(double t_s, odrive::Command command, const CanFrame& frame);
   void CheckWatchdog(double t_s);
   double WatchdogDeadline_s() const;
   /// Lets the torque that now belongs to the drive's state and input take over one latency after `t_s`.
   void ScheduleTorque(double t_s);
-  void ApplyTorqueChanges(double t_s);
   void SendHeartbeat(FrameList* out) const;
   void SendEstimates(const JointTruth& truth, FrameList* out);
 
   JointDriveConfig joint_;
-  EmulatedDriveConfig config_;
-  std::mt19937_64 random_;
+  odrive::Firmware firmware_;
+  double watchdog_s_;
+  JointSensor sensor_;
+  DelayedTorque torque_;
 
   odrive::AxisState state_ = odrive::AxisState::kIdle;
   odrive::ControllerMode mode_;
   uint32_t error_ = 0;
   float input_torque_Nm_ = 0.0f;  ///< motor side
   double last_fed_s_ = 0.0;
-  Periodic heartbeat_;
+  Periodic heartbeat_{kHeartbeatPeriod_s};
   Periodic feedback_;
-
-  double torque_Nm_ = 0.0;  ///< in force before the first of the pending changes
-  std::array<TorqueChange, 8> pending_{};
-  size_t pending_count_ = 0;
 };
 
 }  // namespace armada

@@ -10,6 +10,7 @@
 #include "host/report_command.h"
 #include "host/run/run_command.h"
 #include "host/sim/sim_command.h"
+#include "host/spy/spy_command.h"
 #include "host/sweep/sweep_command.h"
 
 namespace {
@@ -67,7 +68,20 @@ int main(int argc, char** argv) {
   run.program_directory = ProgramDirectory();
   CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes in real time");
   run.scenario.AddTo(run_command);
-  run_command->add_option("--bus", run.bus, "udp: the user-space CAN bus")->capture_default_str();
+  run.arguments.assign(argv + 1, argv + argc);
+  run_command
+      ->add_option(
+          "--bus", run.bus,
+          "udp: the user-space CAN bus; socketcan: the kernel's CAN, missing interfaces are made; vm: the "
+          "same in a virtual machine whose kernel has CAN")
+      ->take_last()
+      ->capture_default_str();
+  run_command->add_flag("--namespaces", run.namespaces,
+                        "socketcan, vm: each board in a network namespace of its own");
+  run_command
+      ->add_option("--hil-bus", run.hil_buses,
+                   "ARM=BUS: the emulation's end of an arm's bus, where it has another name than the board's")
+      ->allow_extra_args(false);
   run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")
       ->capture_default_str();
   run_command->add_option("--out", run.out, "directory for logs, traces and results")
@@ -81,6 +95,13 @@ int main(int argc, char** argv) {
   report_command->add_option("DIR", report, "directory written by `armada run` or `armada sim --trace`")
       ->required();
   report_command->callback([&] { code = RunReportCommand(report); });
+
+  SpyOptions spy;
+  CLI::App* spy_command = app.add_subcommand("spy", "watch every message of a fleet in lcm-spy");
+  auto* spy_file = spy_command->add_option("FILE", spy.file, "fleet or scenario file: its link.lcm_url");
+  spy_command->add_option("--lcm-url", spy.lcm_url, "watch this LCM url")->excludes(spy_file);
+  spy_command->add_flag("--jar-only", spy.jar_only, "make the jar of message types and print its path");
+  spy_command->callback([&] { code = RunSpyCommand(spy); });
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
     WriteParameterReference(std::cout);

@@ -25,6 +25,7 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
       link_(link),
       period_ns_(Nanoseconds(timing.period_s)),
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
+      transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
       epoch_ns_(epoch_ns),
       estimate_channel_(EstimateChannel(node->id())),
       telemetry_channel_(TelemetryChannel(node->id())) {}
@@ -37,8 +38,9 @@ bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
     if (*stop != 0) return false;
     TakeWaitingFrames();
     out_.Clear();
-    ready = node_->BringUp(&out_);
+    ready = node_->BringUp(tick_ns, &out_);
     Send();
+    ConfirmSent(tick_ns + period_ns_ / 2);
   }
   return ready;
 }
@@ -62,7 +64,9 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   final_state_ = node_->state();
   out_.Clear();
   node_->Disable(&out_);
+  bus_->DropWaiting();
   Send();
+  ConfirmSent(MonotonicNow() + period_ns_);
 }
 
 void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
@@ -78,8 +82,13 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
   out_.Clear();
   node_->Step(tick_ns, &out_);
-  if (bus_down_) node_->Fail(FaultCause::kBusDown, &out_);
+  if (bus_fault_ != FaultCause::kNone && node_->fault() == FaultCause::kNone) {
+    out_.Clear();  // no torque any more
+    node_->Fail(bus_fault_, &out_);
+  }
+  if (node_->fault() != FaultCause::kNone) bus_->DropWaiting();  // nothing old before the drives' rest
   Send();
+  ConfirmSent(MonotonicNow() + transmit_timeout_ns_);
   const int64_t sent_ns = MonotonicNow();
 
   ++report_.ticks;
@@ -96,16 +105,50 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
 void ArmLoop::Send() {
   // A frame that the bus does not take is dropped and counted there: an old torque is never sent late.
-  for (const CanFrame& frame : out_) {
-    if (bus_->Send(frame) == BusStatus::kDown) bus_down_ = true;
+  for (const CanFrame& frame : out_) Note(bus_->Send(frame));
+}
+
+void ArmLoop::ConfirmSent(int64_t deadline_ns) {
+  constexpr int kMostInARow = 2;
+  const BusStatus status = bus_->Flush(deadline_ns);
+  Note(status);
+  if (status == BusStatus::kOk) {
+    unsent_in_a_row_ = 0;
+    return;
   }
+  ++report_.unsent_ticks;
+  if (++unsent_in_a_row_ >= kMostInARow && bus_fault_ == FaultCause::kNone) {
+    bus_fault_ = FaultCause::kTransmitStuck;
+  }
+}
+
+void ArmLoop::Note(BusStatus status) {
+  FaultCause cause = FaultCause::kNone;
+  switch (status) {
+    case BusStatus::kOk:
+    case BusStatus::kTimeout:
+    case BusStatus::kQueueFull:     // counted by the bus; ConfirmSent judges them
+    case BusStatus::kErrorPassive:  // counted by the bus; the arm can still be controlled
+      return;
+    case BusStatus::kBusOff:
+      cause = FaultCause::kBusOff;
+      break;
+    case BusStatus::kRestarted:
+      cause = FaultCause::kBusRestarted;
+      break;
+    case BusStatus::kDown:
+      cause = FaultCause::kBusDown;
+      break;
+  }
+  if (bus_fault_ == FaultCause::kNone) bus_fault_ = cause;
 }
 
 int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
   CanFrame frame;
   while (!node_->SamplesComplete()) {
     const BusStatus status = bus_->Receive(deadline_ns, &frame);
-    if (status == BusStatus::kDown) bus_down_ = true;
+    Note(status);
+    if (status == BusStatus::kErrorPassive) continue;
     if (status != BusStatus::kOk) break;
     node_->OnFrame(frame);
   }
@@ -115,7 +158,12 @@ int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
 void ArmLoop::TakeWaitingFrames() {
   constexpr int kMostPerTick = 256;  // bounds the work a babbling bus can cause
   CanFrame frame;
-  for (int i = 0; i < kMostPerTick && bus_->Receive(0, &frame) == BusStatus::kOk; ++i) node_->OnFrame(frame);
+  for (int i = 0; i < kMostPerTick; ++i) {
+    const BusStatus status = bus_->Receive(0, &frame);
+    Note(status);
+    if (status == BusStatus::kTimeout || status == BusStatus::kDown) return;
+    if (status == BusStatus::kOk) node_->OnFrame(frame);
+  }
 }
 
 void ArmLoop::PublishTelemetry() {
@@ -126,7 +174,7 @@ void ArmLoop::PublishTelemetry() {
   const BusCounters& can = bus_->counters();
   telemetry_.can_sent = static_cast<int64_t>(can.sent);
   telemetry_.can_received = static_cast<int64_t>(can.received);
-  telemetry_.can_dropped = static_cast<int64_t>(can.dropped_queue_full);
+  telemetry_.can_dropped = static_cast<int64_t>(can.dropped_queue_full + can.dropped_late);
   const LcmCounters& lcm = link_->counters();
   telemetry_.lcm_received = static_cast<int64_t>(lcm.received);
   telemetry_.lcm_rejected = node_->rejected_messages() + static_cast<int64_t>(lcm.malformed);

@@ -14,11 +14,12 @@ namespace armada {
 /// What one run of the loop came to.
 struct LoopReport {
   DurationHistogram wakeup_lateness;
-  DurationHistogram compute;  ///< from the last feedback frame to the last torque frame handed to the bus
+  DurationHistogram compute;           ///< from the last feedback frame to the last torque frame on the wire
   DurationHistogram sample_to_torque;  ///< from the request for samples to the same
   int64_t ticks = 0;
   int64_t missed_ticks = 0;
   int64_t incomplete_samples = 0;  ///< ticks in which a joint's sample did not come in time
+  int64_t unsent_ticks = 0;        ///< ticks in which not every torque was on the wire in time
   int64_t heap_allocations = 0;    ///< since the first tick
   int64_t page_faults = 0;         ///< since the first tick
 };
@@ -42,6 +43,10 @@ class ArmLoop {
  private:
   void Tick(int64_t tick_ns, int64_t woken_ns);
   void Send();
+  /// Waits until the torques are on the wire.
+  void ConfirmSent(int64_t deadline_ns);
+  /// What the bus said: remembers what the tick has to fail for.
+  void Note(BusStatus status);
   /// Takes frames until the samples are complete or the deadline has passed; returns the time at which it had
   /// what it gets.
   int64_t AwaitSamples(int64_t deadline_ns);
@@ -54,6 +59,7 @@ class ArmLoop {
   LcmEndpoint* link_;
   int64_t period_ns_;
   int64_t feedback_timeout_ns_;
+  int64_t transmit_timeout_ns_;
   int64_t epoch_ns_;
   ArmChannel estimate_channel_;
   ArmChannel telemetry_channel_;
@@ -62,7 +68,8 @@ class ArmLoop {
   telemetry_t telemetry_{};
   LoopReport report_;
   ControllerState final_state_ = ControllerState::kInit;
-  bool bus_down_ = false;
+  FaultCause bus_fault_ = FaultCause::kNone;
+  int unsent_in_a_row_ = 0;
   int64_t heap_at_start_ = 0;
   int64_t faults_at_start_ = 0;
 };

@@ -72,7 +72,7 @@ int Run(const Options& options) {
   const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
   const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
   if (!link) return Fail(options, error);
-  const auto bus = OpenBus(entry.bus, &error);
+  const auto bus = OpenBus(entry.bus, BusOptionsOf(entry), &error);
   if (!bus) return Fail(options, error);
 
   const RealtimeGrant grant = EnterRealtime(options.priority);
@@ -89,9 +89,11 @@ int Run(const Options& options) {
   if (!loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
                              ? "stopped before the start"
-                             : "not every drive on " + entry.bus + " reached torque mode before the start");
+                             : "not every drive on " + entry.bus +
+                                   " reached torque mode before the start: " + node->ExplainDrives());
   }
   loop->Run(end_ns, &stop_requested);
+  LeaveRealtime();
 
   if (!options.json.empty()) {
     std::ofstream file(options.json);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "firmware/can/odrive_cansimple.h"
+#include "firmware/can/make_drive.h"
 #include "firmware/link/channels.h"
 
 namespace armada {
@@ -27,16 +27,6 @@ TaskVector ToTask(const double (&from)[3]) {
   return to;
 }
 
-std::unique_ptr<JointDrive> MakeDrive(DriveProfile profile, const JointDriveConfig& config) {
-  switch (profile) {
-    case DriveProfile::kODriveCanSimple:
-      break;
-    case DriveProfile::kODriveCanSimpleV05:
-      return std::make_unique<ODriveCanSimple>(config, odrive::Firmware::kV05);
-  }
-  return std::make_unique<ODriveCanSimple>(config);
-}
-
 }  // namespace
 
 ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns)
@@ -45,10 +35,8 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
       timing_(fleet.timing),
       schedule_(fleet.Schedule()),
       epoch_ns_(epoch_ns),
+      drives_(MakeDrives(fleet.arms[index].joints)),
       controller_(fleet.ControllerConfig(index), initial) {
-  for (const JointDriveConfig& joint : fleet.arms[index].joints) {
-    drives_.push_back(MakeDrive(fleet.arms[index].profile, joint));
-  }
   for (size_t topology = 0; topology < fleet.topologies.size(); ++topology) {
     for (const Pin& pin : fleet.topologies[topology].pins) {
       if (pin.arm == id_) ListenTo(fleet, kLeader, topology, pin.weight);
@@ -73,13 +61,20 @@ void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, do
   source->weight[topology] = weight;
 }
 
-bool ArmNode::BringUp(FrameList* out) {
-  for (const auto& drive : drives_) {
-    drive->Enable(out);
-    drive->RequestSample(out);  // keeps the drive's watchdog fed until torques do
-  }
+bool ArmNode::BringUp(int64_t now_ns, FrameList* out) {
+  for (const auto& drive : drives_) drive->BringUp(now_ns, out);
   return std::all_of(drives_.begin(), drives_.end(),
                      [](const auto& drive) { return drive->state() == DriveState::kTorque; });
+}
+
+std::string ArmNode::ExplainDrives() const {
+  std::string text;
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    if (drives_[i]->state() == DriveState::kTorque) continue;
+    if (!text.empty()) text += "; ";
+    text += "joint " + std::to_string(i + 1) + ": " + drives_[i]->Explain();
+  }
+  return text;
 }
 
 std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer* buffer) {
@@ -104,15 +99,21 @@ void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
   request_ns_ = now_ns;
   for (size_t i = 0; i < drives_.size(); ++i) {
     sequence_at_request_[i] = drives_[i]->sample().sequence;
-    drives_[i]->RequestSample(out);
+    drives_[i]->RequestSample(now_ns, out);
   }
 }
 
-bool ArmNode::OnFrame(const CanFrame& frame) {
+Reception ArmNode::OnFrame(const CanFrame& frame) {
   for (const auto& drive : drives_) {
-    if (drive->OnFrame(frame)) return true;
+    const Reception reception = drive->OnFrame(frame);
+    if (reception == Reception::kNotMine) continue;
+    if (reception == Reception::kMalformed) {
+      ++malformed_frames_;
+      nonsense_since_complete_ = true;
+    }
+    return reception;
   }
-  return false;
+  return Reception::kNotMine;
 }
 
 bool ArmNode::SamplesComplete() const {
@@ -188,6 +189,7 @@ bool ArmNode::ReadJoints(int64_t tick_ns) {
     sum_ns += (request_ns_ + sample.stamp_ns) / 2 - tick_ns;
     ++fresh;
   }
+  if (SamplesComplete()) nonsense_since_complete_ = false;
   const int64_t sample_ns = tick_ns + (fresh > 0 ? sum_ns / fresh : 0);
   input_.tick_s = Seconds(tick_ns - epoch_ns_);
   input_.sample_s = Seconds(sample_ns - epoch_ns_);
@@ -213,7 +215,7 @@ void ArmNode::Step(int64_t tick_ns, FrameList* out) {
     if (!drives_follow) {
       Fail(FaultCause::kDriveLeftTorque, out);
     } else if (!ReadJoints(tick_ns)) {
-      Fail(FaultCause::kFeedbackStale, out);
+      Fail(nonsense_since_complete_ ? FaultCause::kFeedbackNonsense : FaultCause::kFeedbackStale, out);
     }
   }
   if (state_ == ControllerState::kFault) {

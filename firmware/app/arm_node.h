@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "firmware/app/fleet.h"
@@ -15,7 +16,17 @@
 namespace armada {
 
 /// Why a node went to kFault.
-enum class FaultCause { kNone, kDriveLeftTorque, kFeedbackStale, kNonFiniteTorque, kBusDown };
+enum class FaultCause {
+  kNone,
+  kDriveLeftTorque,
+  kFeedbackStale,
+  kFeedbackNonsense,
+  kNonFiniteTorque,
+  kBusDown,
+  kBusOff,
+  kBusRestarted,
+  kTransmitStuck,
+};
 
 constexpr const char* NameOf(FaultCause cause) {
   switch (cause) {
@@ -25,12 +36,20 @@ constexpr const char* NameOf(FaultCause cause) {
       return "drive not in torque mode";
     case FaultCause::kFeedbackStale:
       return "feedback stale";
+    case FaultCause::kFeedbackNonsense:
+      return "feedback makes no sense";
     case FaultCause::kNonFiniteTorque:
       return "torque not finite";
     case FaultCause::kBusDown:
+      return "bus down";
+    case FaultCause::kBusOff:
+      return "bus-off";
+    case FaultCause::kBusRestarted:
+      return "bus restarted";
+    case FaultCause::kTransmitStuck:
       break;
   }
-  return "bus down";
+  return "torques not sent";
 }
 
 /// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages
@@ -41,14 +60,16 @@ class ArmNode {
   ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns);
 
   /// Before the first tick, once a period: brings the drives into torque mode. True once all are.
-  bool BringUp(FrameList* out);
+  bool BringUp(int64_t now_ns, FrameList* out);
+  /// What keeps drives from torque mode, for people; empty when all are.
+  std::string ExplainDrives() const;
 
   /// Each tick, in this order:
   /// 1. publish what neighbours use, the estimate valid at this tick;
   std::span<const uint8_t> EncodeEstimate(int64_t tick_ns, MessageBuffer* buffer);
   /// 2. ask the joints for samples, and take the answers until complete or out of time;
   void RequestSamples(int64_t now_ns, FrameList* out);
-  bool OnFrame(const CanFrame& frame);
+  Reception OnFrame(const CanFrame& frame);
   bool SamplesComplete() const;
   /// 3. take what the neighbours sent;
   void OnMessage(const LcmMessage& message);
@@ -70,6 +91,8 @@ class ArmNode {
   const ArmController& controller() const { return controller_; }
   /// Messages dropped: malformed, stale, or of another fleet's shape.
   int64_t rejected_messages() const { return rejected_messages_; }
+  /// Frames of a drive that no drive of its kind would send.
+  int64_t malformed_frames() const { return malformed_frames_; }
 
  private:
   /// A node this arm listens to, in any of the topologies.
@@ -102,6 +125,8 @@ class ArmNode {
   ArmInput input_;
   int64_t request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
+  bool nonsense_since_complete_ = false;
+  int64_t malformed_frames_ = 0;
   int64_t estimate_sequence_ = 0;
   int64_t telemetry_sequence_ = 0;
   int64_t rejected_messages_ = 0;

@@ -1,8 +1,24 @@
 #include "firmware/app/fleet.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "firmware/can/make_drive.h"
+
 namespace armada {
+
+BusOptions BusOptionsOf(const ArmEntry& arm) {
+  BusOptions options;
+  options.config = arm.can;
+  options.fd = std::any_of(arm.joints.begin(), arm.joints.end(), [](const JointDriveConfig& joint) {
+    return joint.profile == DriveProfile::kMoteus;
+  });
+  for (const auto& drive : MakeDrives(arm.joints)) {
+    const std::vector<CanFilter> filters = drive->Filters();
+    options.filters.insert(options.filters.end(), filters.begin(), filters.end());
+  }
+  return options;
+}
 
 int FleetConfig::IndexOf(int id) const {
   for (size_t i = 0; i < arms.size(); ++i) {

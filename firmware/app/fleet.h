@@ -3,17 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "firmware/can/joint_drive.h"
+#include "firmware/can/can_bus_config.h"
+#include "firmware/can/joint_drive_config.h"
 #include "firmware/core/arm_controller.h"
 #include "firmware/core/graph.h"
 #include "firmware/link/clock_offset.h"
 
 namespace armada {
-
-enum class DriveProfile {
-  kODriveCanSimple,     ///< firmware 0.6
-  kODriveCanSimpleV05,  ///< firmware 0.5: another heartbeat
-};
 
 struct LcmLinkConfig {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
@@ -37,10 +33,14 @@ struct ArmEntry {
   int id = 0;
   PlanarArmConfig arm;
   std::string bus;  ///< "udp:<group>:<port>" or "socketcan:<interface>"
-  DriveProfile profile = DriveProfile::kODriveCanSimple;
+  CanBusConfig can;
   std::vector<JointDriveConfig> joints;  ///< one a joint, in order
   ControlConfig control;                 ///< the fleet's, with this arm's own values on top; gains expanded
 };
+
+/// What the arm's board wants of its bus: CAN FD if one of its drives speaks it, and the frames of its drives
+/// only.
+BusOptions BusOptionsOf(const ArmEntry& arm);
 
 /// One topology: arms by id.
 struct Topology {

@@ -38,6 +38,7 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
   Put(out, "sample_to_torque", report.sample_to_torque);
   out << "    \"ticks\": " << report.ticks << ",\n    \"missed_ticks\": " << report.missed_ticks
       << ",\n    \"incomplete_samples\": " << report.incomplete_samples
+      << ",\n    \"unsent_ticks\": " << report.unsent_ticks
       << ",\n    \"realtime_priority\": " << (grant.fifo ? "true" : "false") << "\n  },\n";
   out << "  \"memory\": {\n    \"heap_allocations\": ";
   if (HeapCounter::available()) {
@@ -51,8 +52,12 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
   const LcmCounters& lcm = link.counters();
   out << "  \"bus\": {\n    \"can_sent\": " << can.sent << ",\n    \"can_received\": " << can.received
       << ",\n    \"can_dropped\": " << can.dropped_queue_full << ",\n    \"can_malformed\": " << can.malformed
-      << ",\n    \"can_errors\": " << can.errors << ",\n    \"lcm_sent\": " << lcm.sent
-      << ",\n    \"lcm_received\": " << lcm.received
+      << ",\n    \"can_nonsense\": " << node.malformed_frames()
+      << ",\n    \"can_dropped_late\": " << can.dropped_late << ",\n    \"can_replaced\": " << can.replaced
+      << ",\n    \"can_receive_overflowed\": " << can.receive_overflowed
+      << ",\n    \"can_error_passive\": " << can.error_passive << ",\n    \"can_bus_off\": " << can.bus_off
+      << ",\n    \"can_restarts\": " << can.restarts << ",\n    \"can_errors\": " << can.errors
+      << ",\n    \"lcm_sent\": " << lcm.sent << ",\n    \"lcm_received\": " << lcm.received
       << ",\n    \"lcm_rejected\": " << node.rejected_messages()
       << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed
       << "\n  }\n}\n";

@@ -53,6 +53,11 @@ RealtimeGrant EnterRealtime(int priority, size_t stack_bytes) {
   return grant;
 }
 
+void LeaveRealtime() {
+  const sched_param none{.sched_priority = 0};
+  sched_setscheduler(0, SCHED_OTHER, &none);
+}
+
 int64_t PageFaults() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -22,6 +22,9 @@ struct RealtimeGrant {
 /// from giving memory back, and asks for SCHED_FIFO at `priority` (0: does not ask). Start-up only.
 RealtimeGrant EnterRealtime(int priority, size_t stack_bytes = size_t{512} * 1024);
 
+/// Back to the ordinary scheduler: what a program does after its loop must not hold up the loops of others.
+void LeaveRealtime();
+
 /// Page faults of this process so far, minor and major.
 int64_t PageFaults();
 

@@ -14,6 +14,9 @@ struct CanFrame {
   bool fd = false;        ///< CAN FD
   bool bitrate_switch = false;
   bool error_state_indicator = false;
+  /// Not on the wire. While it waits to be sent, a newer frame with the same identifier and this mark takes
+  /// its place: of torques only the latest counts.
+  bool latest_only = false;
   uint8_t length = 0;  ///< bytes used in `data`; for a remote frame, the length asked for
   std::array<uint8_t, 64> data{};
   int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC at reception; 0 for a frame not received from a bus

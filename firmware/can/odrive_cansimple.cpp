@@ -4,32 +4,48 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/can/round_toward_zero.h"
+#include "firmware/can/value_format.h"
+
 namespace armada {
 namespace {
 
 using odrive::AxisState;
 
-/// A heartbeat may have been under way when the bring-up was sent; the second one after it has seen it.
+constexpr double kHeartbeat_s = 0.1;
+/// A heartbeat may have been under way when the drive was armed; the second one after it has seen it.
 constexpr int kHeartbeatsToConfirm = 2;
-
-/// Rounds toward zero: a torque at the limit does not pass it by rounding.
-float ToFloatTowardZero(double value) {
-  const auto nearest = static_cast<float>(value);
-  return std::abs(static_cast<double>(nearest)) > std::abs(value) ? std::nextafter(nearest, 0.0f) : nearest;
-}
 
 }  // namespace
 
-ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config, odrive::Firmware firmware)
-    : config_(config), firmware_(firmware) {}
+ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
+    : config_(config),
+      firmware_(odrive::FirmwareOf(config.profile)),
+      heartbeats_to_trip_(kHeartbeatsToConfirm +
+                          static_cast<int>(std::ceil(config.watchdog_s / kHeartbeat_s))) {}
 
-void ODriveCanSimple::Enable(FrameList* out) {
-  if (phase_ != Phase::kBringUp || !heard_) return;
-  if (attempts_ > 0 && heartbeats_since_attempt_ < kHeartbeatsToConfirm) return;
-  if (attempts_ == kMaxAttempts && heartbeat_.error != 0) {
-    phase_ = Phase::kEnded;
-    return;
+void ODriveCanSimple::BringUp(int64_t /*now_ns*/, FrameList* out) {
+  if (phase_ == Phase::kTorque) return CommandTorque(0.0, out);
+  if (phase_ == Phase::kEnded || !heard_) return;
+  const bool proving = watchdog_ == DriveWatchdog::kUnproved;
+  if (proving && attempts_ > 0 && heartbeats_since_attempt_ >= heartbeats_to_trip_ &&
+      heartbeat_.state == AxisState::kClosedLoop) {
+    watchdog_ = DriveWatchdog::kOff;
+    return Disable(out);
   }
+  const int patience = proving ? heartbeats_to_trip_ : kHeartbeatsToConfirm;
+  if (attempts_ == 0 || heartbeats_since_attempt_ >= patience) {
+    if (attempts_ == kMaxAttempts && heartbeat_.error != 0) {
+      phase_ = Phase::kEnded;
+      return;
+    }
+    Arm(out);
+  } else if (!proving) {
+    CommandTorque(0.0, out);  // feeds the watchdog until a heartbeat confirms
+  }
+}
+
+void ODriveCanSimple::Arm(FrameList* out) {
   const int node = config_.node_id;
   out->Push(odrive::EncodeClearErrors(node));
   out->Push(
@@ -40,7 +56,7 @@ void ODriveCanSimple::Enable(FrameList* out) {
   heartbeats_since_attempt_ = 0;
 }
 
-void ODriveCanSimple::RequestSample(FrameList* out) {
+void ODriveCanSimple::RequestSample(int64_t /*now_ns*/, FrameList* out) {
   out->Push(odrive::EncodeEncoderRequest(config_.node_id));
 }
 
@@ -48,7 +64,13 @@ void ODriveCanSimple::CommandTorque(double tau_Nm, FrameList* out) {
   const double limit = config_.torque_limit_Nm;
   const double allowed_Nm = std::isfinite(tau_Nm) ? std::clamp(tau_Nm, -limit, limit) : 0.0;
   const double motor_Nm = config_.direction * allowed_Nm / config_.gear_ratio;
-  out->Push(odrive::EncodeSetInputTorque(config_.node_id, ToFloatTowardZero(motor_Nm)));
+  out->Push(odrive::EncodeSetInputTorque(config_.node_id, FloatTowardZero(motor_Nm)));
+}
+
+/// CANSimple has no ramp: the e-stop disarms at once, and latches an error that keeps the axis so.
+void ODriveCanSimple::QuickStop(FrameList* out) {
+  phase_ = Phase::kEnded;
+  out->Push(odrive::EncodeEstop(config_.node_id));
 }
 
 void ODriveCanSimple::Disable(FrameList* out) {
@@ -56,40 +78,71 @@ void ODriveCanSimple::Disable(FrameList* out) {
   out->Push(odrive::EncodeSetAxisState(config_.node_id, AxisState::kIdle));
 }
 
-bool ODriveCanSimple::OnFrame(const CanFrame& frame) {
-  if (odrive::Heartbeat heartbeat; odrive::DecodeHeartbeat(frame, config_.node_id, firmware_, &heartbeat)) {
+Reception ODriveCanSimple::OnFrame(const CanFrame& frame) {
+  odrive::Command command{};
+  if (!odrive::IsForNode(frame, config_.node_id, &command) || frame.remote) return Reception::kNotMine;
+  if (command == odrive::Command::kHeartbeat) {
+    odrive::Heartbeat heartbeat;
+    if (!odrive::DecodeHeartbeat(frame, config_.node_id, firmware_, &heartbeat)) return Reception::kMalformed;
     OnHeartbeat(heartbeat);
-    return true;
+    return Reception::kTaken;
   }
+  if (command != odrive::Command::kEncoderEstimates) return Reception::kNotMine;
   odrive::EncoderEstimates estimates;
-  if (!odrive::DecodeEncoderEstimates(frame, config_.node_id, &estimates)) return false;
+  if (!odrive::DecodeEncoderEstimates(frame, config_.node_id, &estimates)) return Reception::kMalformed;
   const double joint_rad_per_turn = config_.direction * 2.0 * std::numbers::pi / config_.gear_ratio;
   sample_.position_rad = joint_rad_per_turn * estimates.position_turns + config_.offset_rad;
   sample_.velocity_rad_s = joint_rad_per_turn * estimates.velocity_turns_s;
   sample_.stamp_ns = frame.stamp_ns;
   ++sample_.sequence;
-  return true;
+  return Reception::kTaken;
 }
 
 void ODriveCanSimple::OnHeartbeat(const odrive::Heartbeat& heartbeat) {
   heartbeat_ = heartbeat;
   heard_ = true;
-  heartbeats_since_attempt_ = std::min(heartbeats_since_attempt_ + 1, kHeartbeatsToConfirm);
+  heartbeats_since_attempt_ = std::min(heartbeats_since_attempt_ + 1, heartbeats_to_trip_);
+  if (phase_ == Phase::kBringUp && watchdog_ == DriveWatchdog::kUnproved &&
+      (heartbeat.error & odrive::WatchdogError(firmware_)) != 0) {
+    watchdog_ = DriveWatchdog::kProved;
+    attempts_ = 0;
+  }
   const bool torque = heartbeat.state == AxisState::kClosedLoop && heartbeat.error == 0;
-  if (phase_ == Phase::kBringUp && attempts_ > 0 && torque) phase_ = Phase::kTorque;
+  const bool to_stay = watchdog_ == DriveWatchdog::kProved && attempts_ > 0;
+  if (phase_ == Phase::kBringUp && to_stay && torque) phase_ = Phase::kTorque;
   if (phase_ == Phase::kTorque && !torque) phase_ = Phase::kEnded;
+}
+
+std::vector<CanFilter> ODriveCanSimple::Filters() const {
+  // Every message of the node, both ways: what the drive says, and our own as proof that it was sent.
+  return {{.id = static_cast<uint32_t>(config_.node_id) << 5, .mask = 0x7E0}};
+}
+
+void ODriveCanSimple::Reset() {
+  phase_ = Phase::kBringUp;
+  watchdog_ = DriveWatchdog::kUnproved;
+  attempts_ = 0;
 }
 
 DriveState ODriveCanSimple::state() const {
   if (!heard_) return DriveState::kUnknown;
   if (phase_ == Phase::kTorque) return DriveState::kTorque;
-  if (phase_ == Phase::kBringUp) return attempts_ > 0 ? DriveState::kEnabling : DriveState::kIdle;
+  if (watchdog_ == DriveWatchdog::kOff) return DriveState::kFault;
+  if (phase_ == Phase::kBringUp) {
+    return attempts_ > 0 || watchdog_ == DriveWatchdog::kProved ? DriveState::kEnabling : DriveState::kIdle;
+  }
   return heartbeat_.error != 0 ? DriveState::kFault : DriveState::kIdle;
 }
 
-void ODriveCanSimple::Reset() {
-  phase_ = Phase::kBringUp;
-  attempts_ = 0;
+std::string ODriveCanSimple::Explain() const {
+  if (!heard_) return "no heartbeat heard";
+  if (phase_ == Phase::kTorque) return "";
+  if (watchdog_ == DriveWatchdog::kOff) {
+    return "its watchdog is off: it stayed armed in silence; set axis0.config.enable_watchdog and "
+           "watchdog_timeout";
+  }
+  if (heartbeat_.error != 0) return "axis error " + Hexadecimal(heartbeat_.error);
+  return watchdog_ == DriveWatchdog::kUnproved ? "has not shown its watchdog yet" : "not in closed loop";
 }
 
 }  // namespace armada

@@ -6,48 +6,52 @@
 namespace armada {
 
 /// Master's side of one ODrive axis in torque control over CANSimple.
-///   q = direction 2 pi turns / gear_ratio + offset,  tau = direction gear_ratio tau_motor.
-/// The bring-up runs on the drive's heartbeats, so it needs no clock: its four frames are sent when a
-/// heartbeat has been heard, and again when two more did not confirm closed loop, which bounds their rate to
-/// one in 200 ms.
+///
+/// The bring-up runs on the drive's heartbeats, ten a second. CANSimple cannot tell whether the watchdog is
+/// on, so the drive has to show it: it is armed with zero torque and then left alone, until a heartbeat
+/// reports that the watchdog has disarmed it. One that stays armed is refused. A drive that reports an
+/// expired watchdog when it is first heard has shown it already. Then it is armed to stay, and fed.
 class ODriveCanSimple final : public JointDrive {
  public:
-  explicit ODriveCanSimple(const JointDriveConfig& config,
-                           odrive::Firmware firmware = odrive::Firmware::kV06);
+  explicit ODriveCanSimple(const JointDriveConfig& config);
 
-  void Enable(FrameList* out) override;
-  void RequestSample(FrameList* out) override;
+  void BringUp(int64_t now_ns, FrameList* out) override;
+  void RequestSample(int64_t now_ns, FrameList* out) override;
   void CommandTorque(double tau_Nm, FrameList* out) override;
+  void QuickStop(FrameList* out) override;
   void Disable(FrameList* out) override;
-  bool OnFrame(const CanFrame& frame) override;
+  Reception OnFrame(const CanFrame& frame) override;
+  std::vector<CanFilter> Filters() const override;
+  void Reset() override;
 
   DriveState state() const override;
+  DriveWatchdog watchdog() const override { return watchdog_; }
   uint32_t error_code() const override { return heartbeat_.error; }
   const JointSample& sample() const override { return sample_; }
+  std::string Explain() const override;
 
-  /// Allows a bring-up again after the drive has left closed loop, was disabled, or is in kFault. The
-  /// decision of a person or of a supervisor, never of a codec.
-  void Reset();
-
-  /// Bring-ups that may end in an error report before it is held to be a fault: the first error may be an old
-  /// one, and the frame that clears it may be lost.
+  /// Attempts to arm that may end in an error report before it is held to be a fault: the first error may be
+  /// an old one, and the frame that clears it may be lost.
   static constexpr int kMaxAttempts = 5;
 
  private:
   enum class Phase {
-    kBringUp,  ///< Enable may send
+    kBringUp,  ///< to be armed, or armed and not confirmed
     kTorque,   ///< confirmed
-    kEnded,    ///< left, disabled or given up: silent until Reset()
+    kEnded,    ///< left, stopped, refused or given up: silent until Reset()
   };
 
+  void Arm(FrameList* out);
   void OnHeartbeat(const odrive::Heartbeat& heartbeat);
 
   JointDriveConfig config_;
   odrive::Firmware firmware_;
+  int heartbeats_to_trip_;  ///< heartbeats in which a watchdog that is on must have shown
   odrive::Heartbeat heartbeat_;
   bool heard_ = false;
+  DriveWatchdog watchdog_ = DriveWatchdog::kUnproved;
   Phase phase_ = Phase::kBringUp;
-  int attempts_ = 0;  ///< bring-ups sent
+  int attempts_ = 0;  ///< to arm, since the watchdog was last in doubt
   int heartbeats_since_attempt_ = 0;
   JointSample sample_;
 };

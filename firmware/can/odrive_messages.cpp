@@ -9,13 +9,6 @@ namespace {
 constexpr int kCommandBits = 5;
 constexpr uint32_t kCommandMask = (1u << kCommandBits) - 1;
 
-// 0.5: a heartbeat flag says that a part of the axis failed; the axis error has a bit for the same.
-struct PartFlag {
-  size_t byte;
-  uint32_t axis_error;
-};
-constexpr PartFlag kPartFlags[] = {{5, 0x40}, {6, 0x100}, {7, 0x200}};  // motor, encoder, controller
-
 CanFrame Frame(int node, Command command, uint8_t length) {
   CanFrame frame;
   frame.id = static_cast<uint32_t>(node) << kCommandBits | static_cast<uint32_t>(command);
@@ -23,21 +16,34 @@ CanFrame Frame(int node, Command command, uint8_t length) {
   return frame;
 }
 
-void PutU32(uint32_t value, size_t at, CanFrame* frame) {
-  for (size_t i = 0; i < 4; ++i) frame->data[at + i] = static_cast<uint8_t>(value >> (8 * i));
-}
+using enum CanSignal::Kind;
+constexpr auto kLittle = CanSignal::ByteOrder::kLittle;
 
-uint32_t GetU32(const CanFrame& frame, size_t at) {
-  uint32_t value = 0;
-  for (size_t i = 4; i-- > 0;) value = value << 8 | frame.data[at + i];
-  return value;
-}
+constexpr CanSignal kAxisError{"axis_error", 0, 32};
+constexpr CanSignal kAxisState{"axis_state", 32, 8};
+constexpr CanSignal kProcedureResult{"procedure_result", 40, 8};
+constexpr CanSignal kRequestedState{"requested_state", 0, 32};
+constexpr CanSignal kPosition{"position", 0, 32, kFloat32, kLittle, "rev"};
+constexpr CanSignal kVelocity{"velocity", 32, 32, kFloat32, kLittle, "rev/s"};
+constexpr CanSignal kControlMode{"control_mode", 0, 32};
+constexpr CanSignal kInputMode{"input_mode", 32, 32};
+constexpr CanSignal kInputTorque{"input_torque", 0, 32, kFloat32, kLittle, "N m"};
+constexpr CanSignal kIdentify{"identify", 0, 8};
 
-void PutF32(float value, size_t at, CanFrame* frame) {
-  PutU32(std::bit_cast<uint32_t>(value), at, frame);
+// 0.5: a heartbeat flag says that a part of the axis failed; the axis error has a bit for the same.
+struct PartFlag {
+  CanSignal signal;
+  uint32_t axis_error;
+};
+constexpr PartFlag kPartFlags[] = {
+    {{"motor_error", 40, 1}, 0x40}, {{"encoder_error", 48, 1}, 0x100}, {{"controller_error", 56, 1}, 0x200}};
+constexpr CanSignal kTrajectoryDone{"trajectory_done", 63, 1};
+
+float GetFloat(const CanFrame& frame, const CanSignal& signal) {
+  return std::bit_cast<float>(GetRaw(frame, signal));
 }
-float GetF32(const CanFrame& frame, size_t at) {
-  return std::bit_cast<float>(GetU32(frame, at));
+void PutFloat(const CanSignal& signal, float value, CanFrame* frame) {
+  PutRaw(signal, std::bit_cast<uint32_t>(value), frame);
 }
 
 bool IsData(const CanFrame& frame, int node, Command wanted, uint8_t length) {
@@ -56,12 +62,14 @@ bool IsForNode(const CanFrame& frame, int node, Command* command) {
 
 CanFrame EncodeHeartbeat(int node, Firmware firmware, const Heartbeat& heartbeat) {
   CanFrame frame = Frame(node, Command::kHeartbeat, 8);
-  PutU32(heartbeat.error, 0, &frame);
-  frame.data[4] = static_cast<uint8_t>(heartbeat.state);
+  PutRaw(kAxisError, heartbeat.error, &frame);
+  PutRaw(kAxisState, static_cast<uint32_t>(heartbeat.state), &frame);
   if (firmware == Firmware::kV06) {
-    frame.data[5] = heartbeat.procedure_result;
+    PutRaw(kProcedureResult, heartbeat.procedure_result, &frame);
   } else {
-    for (const PartFlag& flag : kPartFlags) frame.data[flag.byte] = (heartbeat.error & flag.axis_error) != 0;
+    for (const PartFlag& flag : kPartFlags) {
+      PutRaw(flag.signal, (heartbeat.error & flag.axis_error) != 0 ? 1 : 0, &frame);
+    }
   }
   return frame;
 }
@@ -72,14 +80,14 @@ CanFrame EncodeEstop(int node) {
 
 CanFrame EncodeSetAxisState(int node, AxisState state) {
   CanFrame frame = Frame(node, Command::kSetAxisState, 4);
-  PutU32(static_cast<uint32_t>(state), 0, &frame);
+  PutRaw(kRequestedState, static_cast<uint32_t>(state), &frame);
   return frame;
 }
 
 CanFrame EncodeEncoderEstimates(int node, const EncoderEstimates& estimates) {
   CanFrame frame = Frame(node, Command::kEncoderEstimates, 8);
-  PutF32(estimates.position_turns, 0, &frame);
-  PutF32(estimates.velocity_turns_s, 4, &frame);
+  PutFloat(kPosition, estimates.position_turns, &frame);
+  PutFloat(kVelocity, estimates.velocity_turns_s, &frame);
   return frame;
 }
 
@@ -91,14 +99,15 @@ CanFrame EncodeEncoderRequest(int node) {
 
 CanFrame EncodeSetControllerMode(int node, const ControllerMode& mode) {
   CanFrame frame = Frame(node, Command::kSetControllerMode, 8);
-  PutU32(static_cast<uint32_t>(mode.control), 0, &frame);
-  PutU32(static_cast<uint32_t>(mode.input), 4, &frame);
+  PutRaw(kControlMode, static_cast<uint32_t>(mode.control), &frame);
+  PutRaw(kInputMode, static_cast<uint32_t>(mode.input), &frame);
   return frame;
 }
 
 CanFrame EncodeSetInputTorque(int node, float torque_Nm) {
   CanFrame frame = Frame(node, Command::kSetInputTorque, 4);
-  PutF32(torque_Nm, 0, &frame);
+  PutFloat(kInputTorque, torque_Nm, &frame);
+  frame.latest_only = true;
   return frame;
 }
 
@@ -109,15 +118,14 @@ CanFrame EncodeClearErrors(int node) {
 
 bool DecodeHeartbeat(const CanFrame& frame, int node, Firmware firmware, Heartbeat* heartbeat) {
   if (!IsData(frame, node, Command::kHeartbeat, 8)) return false;
-  heartbeat->error = GetU32(frame, 0);
-  heartbeat->state = static_cast<AxisState>(frame.data[4]);
+  heartbeat->error = GetRaw(frame, kAxisError);
+  heartbeat->state = static_cast<AxisState>(GetRaw(frame, kAxisState));
   heartbeat->procedure_result = 0;
   if (firmware == Firmware::kV06) {
-    heartbeat->procedure_result = frame.data[5];
+    heartbeat->procedure_result = static_cast<uint8_t>(GetRaw(frame, kProcedureResult));
   } else {
     for (const PartFlag& flag : kPartFlags) {
-      if (frame.data[flag.byte] & 1u)
-        heartbeat->error |= flag.axis_error;  // bit 7 of the last: trajectory done
+      if (GetRaw(frame, flag.signal) != 0) heartbeat->error |= flag.axis_error;
     }
   }
   return true;
@@ -125,7 +133,7 @@ bool DecodeHeartbeat(const CanFrame& frame, int node, Firmware firmware, Heartbe
 
 bool DecodeSetAxisState(const CanFrame& frame, int node, AxisState* state) {
   if (!IsData(frame, node, Command::kSetAxisState, 4)) return false;
-  const uint32_t value = GetU32(frame, 0);
+  const uint32_t value = GetRaw(frame, kRequestedState);
   if (value > UINT8_MAX) return false;
   *state = static_cast<AxisState>(value);
   return true;
@@ -133,7 +141,7 @@ bool DecodeSetAxisState(const CanFrame& frame, int node, AxisState* state) {
 
 bool DecodeEncoderEstimates(const CanFrame& frame, int node, EncoderEstimates* estimates) {
   if (!IsData(frame, node, Command::kEncoderEstimates, 8)) return false;
-  const EncoderEstimates read{GetF32(frame, 0), GetF32(frame, 4)};
+  const EncoderEstimates read{GetFloat(frame, kPosition), GetFloat(frame, kVelocity)};
   if (!std::isfinite(read.position_turns) || !std::isfinite(read.velocity_turns_s)) return false;
   *estimates = read;
   return true;
@@ -141,17 +149,48 @@ bool DecodeEncoderEstimates(const CanFrame& frame, int node, EncoderEstimates* e
 
 bool DecodeSetControllerMode(const CanFrame& frame, int node, ControllerMode* mode) {
   if (!IsData(frame, node, Command::kSetControllerMode, 8)) return false;
-  mode->control = static_cast<ControlMode>(GetU32(frame, 0));
-  mode->input = static_cast<InputMode>(GetU32(frame, 4));
+  mode->control = static_cast<ControlMode>(GetRaw(frame, kControlMode));
+  mode->input = static_cast<InputMode>(GetRaw(frame, kInputMode));
   return true;
 }
 
 bool DecodeSetInputTorque(const CanFrame& frame, int node, float* torque_Nm) {
   if (!IsData(frame, node, Command::kSetInputTorque, 4)) return false;
-  const float read = GetF32(frame, 0);
+  const float read = GetFloat(frame, kInputTorque);
   if (!std::isfinite(read)) return false;
   *torque_Nm = read;
   return true;
+}
+
+std::vector<CanMessage> Messages(const JointDriveConfig& joint) {
+  std::vector<CanSignal> heartbeat = {kAxisError, kAxisState};
+  if (FirmwareOf(joint.profile) == Firmware::kV06) {
+    heartbeat.push_back(kProcedureResult);
+  } else {
+    for (const PartFlag& flag : kPartFlags) heartbeat.push_back(flag.signal);
+    heartbeat.push_back(kTrajectoryDone);
+  }
+  const auto message = [&](const char* name, Command command, bool from_drive, uint8_t length,
+                           std::vector<CanSignal> signals, const char* meaning) {
+    return CanMessage{.name = name,
+                      .id = Frame(joint.node_id, command, length).id,
+                      .from_drive = from_drive,
+                      .length = length,
+                      .signals = std::move(signals),
+                      .meaning = meaning};
+  };
+  return {
+      message("Heartbeat", Command::kHeartbeat, true, 8, std::move(heartbeat), "every 100 ms"),
+      message("Estop", Command::kEstop, false, 0, {}, "disarms and latches an error"),
+      message("SetAxisState", Command::kSetAxisState, false, 4, {kRequestedState}, "1 idle, 8 closed loop"),
+      message("EncoderEstimates", Command::kEncoderEstimates, true, 8, {kPosition, kVelocity},
+              "motor side; on request or cyclic"),
+      message("SetControllerMode", Command::kSetControllerMode, false, 8, {kControlMode, kInputMode},
+              "1 torque control, 1 passthrough"),
+      message("SetInputTorque", Command::kSetInputTorque, false, 4, {kInputTorque}, "motor side"),
+      message("ClearErrors", Command::kClearErrors, false, 1, {kIdentify},
+              "as when the drive was switched on"),
+  };
 }
 
 }  // namespace armada::odrive

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "firmware/can/frame.h"
+#include "firmware/can/joint_drive_config.h"
+#include "firmware/can/signal.h"
 
 namespace armada::odrive {
 
@@ -28,6 +31,10 @@ enum class Firmware {
   kV05,  ///< 0.5.x, ODrive 3.x
   kV06,  ///< 0.6.x, ODrive Pro, S1, Micro
 };
+
+constexpr Firmware FirmwareOf(DriveProfile profile) {
+  return profile == DriveProfile::kODriveCanSimpleV05 ? Firmware::kV05 : Firmware::kV06;
+}
 
 enum class AxisState : uint8_t { kUndefined = 0, kIdle = 1, kClosedLoop = 8 };
 enum class ControlMode : uint32_t { kVoltage = 0, kTorque = 1, kVelocity = 2, kPosition = 3 };
@@ -76,5 +83,8 @@ bool DecodeSetAxisState(const CanFrame& frame, int node, AxisState* state);
 bool DecodeEncoderEstimates(const CanFrame& frame, int node, EncoderEstimates* estimates);
 bool DecodeSetControllerMode(const CanFrame& frame, int node, ControllerMode* mode);
 bool DecodeSetInputTorque(const CanFrame& frame, int node, float* torque_Nm);
+
+/// All of the above for one joint, field by field.
+std::vector<CanMessage> Messages(const JointDriveConfig& joint);
 
 }  // namespace armada::odrive

@@ -6,14 +6,13 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 
+#include "firmware/can/monotonic.h"
 #include "firmware/can/udp_frame_codec.h"
 
 namespace armada {
 namespace {
 
-constexpr int64_t kNsPerS = 1'000'000'000;
 /// Larger than any frame's datagram with room for keys that are not ours; what is longer is cut and so
 /// malformed.
 constexpr size_t kMaxDatagramBytes = 1024;
@@ -21,28 +20,15 @@ constexpr size_t kMaxDatagramBytes = 1024;
 /// past them to a frame, a flood of them must not hold the loop.
 constexpr int kMaxDropped = 64;
 
-constexpr int64_t Nanoseconds(const timespec& time) {
-  return time.tv_sec * kNsPerS + time.tv_nsec;
-}
-
-int64_t Now_ns(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return Nanoseconds(now);
-}
-
-/// Time of reception on CLOCK_MONOTONIC. The kernel stamps with the wall clock when the datagram comes in,
-/// which may be long before it is taken: carried over by its age. An age that no queue explains means that
-/// the wall clock was set in between; then the time of taking it stands.
+/// Time of reception on CLOCK_MONOTONIC: the kernel's, which may be long before the datagram is taken.
 int64_t ReceptionTime_ns(const msghdr& message) {
-  const int64_t now_ns = Now_ns(CLOCK_MONOTONIC);
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
-  if (header == nullptr || header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_TIMESTAMPNS)
-    return now_ns;
+  if (header == nullptr || header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_TIMESTAMPNS) {
+    return Now_ns(CLOCK_MONOTONIC);
+  }
   timespec stamp{};
   std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-  const int64_t age_ns = Now_ns(CLOCK_REALTIME) - Nanoseconds(stamp);
-  return age_ns >= 0 && age_ns < kNsPerS ? now_ns - age_ns : now_ns;
+  return MonotonicOfWall(stamp);
 }
 
 bool SetOption(const UniqueFd& socket, int level, int option, int value) {

@@ -22,6 +22,8 @@ class UdpCanBus final : public CanBus {
                                          std::string* error);
 
   BusStatus Send(const CanFrame& frame) override;
+  BusStatus Flush(int64_t /*deadline_ns*/) override { return BusStatus::kOk; }  // Send has handed it over
+  void DropWaiting() override {}
   BusStatus Receive(int64_t deadline_ns, CanFrame* frame) override;
   int descriptor() const override { return receiver_.get(); }
 

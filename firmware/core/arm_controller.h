@@ -15,6 +15,7 @@ struct TimingConfig {
   double sample_to_torque_s = 0.001;
   double feedback_timeout_s = 0.003;
   double feedback_stale_s = 0.025;
+  double transmit_timeout_s = 0.002;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -28,6 +29,9 @@ struct TimingConfig {
               feedback_timeout_s);
     parameter({"feedback_stale_s", "s", 1e-4, 1, "age of a joint's sample at which the arm is disabled"},
               feedback_stale_s);
+    parameter({"transmit_timeout_s", "s", 1e-5, 1,
+               "time that a tick waits for its torques to be on the wire; those that are not are dropped"},
+              transmit_timeout_s);
   }
 };
 

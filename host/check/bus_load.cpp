@@ -1,60 +1,94 @@
 #include "host/check/bus_load.h"
 
-#include "firmware/can/odrive_cansimple.h"
-#include "hil/odrive_emulator.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/can/frame_time.h"
+#include "firmware/can/make_drive.h"
 
 namespace armada {
 namespace {
 
-// Frames and their worst bits that one joint's drive and its master put on the bus.
-struct Traffic {
-  double bits_tick = 0.0;
-  double bits_s = 0.0;
-};
+constexpr double kBringUp_s = 2.0;
+constexpr double kMeasured_s = 1.0;
 
-Traffic ODriveTraffic(const JointDriveConfig& joint, double feedback_period_s) {
-  FrameList tick;
-  ODriveCanSimple drive(joint);
-  drive.RequestSample(&tick);
-  drive.CommandTorque(0.0, &tick);
-  const CanFrame estimates = odrive::EncodeEncoderEstimates(joint.node_id, {});
-  tick.Push(estimates);
-  const CanFrame heartbeat = odrive::EncodeHeartbeat(joint.node_id, odrive::Firmware::kV06, {});
-
-  Traffic traffic;
-  for (const CanFrame& frame : tick) traffic.bits_tick += WorstFrameBits(frame);
-  traffic.bits_s = WorstFrameBits(heartbeat) / ODriveEmulator::kHeartbeatPeriod_s;
-  if (feedback_period_s > 0.0) traffic.bits_s += WorstFrameBits(estimates) / feedback_period_s;
-  return traffic;
-}
-
-Traffic JointTraffic(DriveProfile profile, const JointDriveConfig& joint, double feedback_period_s) {
-  switch (profile) {
-    case DriveProfile::kODriveCanSimple:
-    case DriveProfile::kODriveCanSimpleV05:
-      return ODriveTraffic(joint, feedback_period_s);
+/// One arm's drives and their master, with nothing between them.
+class Conversation {
+ public:
+  Conversation(const ArmEntry& entry, double period_s, const EmulatedDriveConfig& config)
+      : can_(entry.can), period_s_(period_s), masters_(MakeDrives(entry.joints)) {
+    for (const JointDriveConfig& joint : entry.joints) drives_.push_back(MakeEmulatedDrive(joint, config, 0));
   }
-  return {};
-}
+
+  /// True once every drive is in torque mode.
+  bool BringUpTick() {
+    for (const auto& master : masters_) master->BringUp(Now_ns(), &to_drives_);
+    Exchange();
+    EndTick();
+    return std::all_of(masters_.begin(), masters_.end(),
+                       [](const auto& master) { return master->state() == DriveState::kTorque; });
+  }
+
+  void ControlTick() {
+    for (const auto& master : masters_) master->RequestSample(Now_ns(), &to_drives_);
+    Exchange();
+    for (const auto& master : masters_) master->CommandTorque(0.0, &to_drives_);
+    Exchange();
+    EndTick();
+  }
+
+  double time_s() const { return t_s_; }
+  double on_wire_s() const { return on_wire_s_; }
+
+ private:
+  int64_t Now_ns() const { return std::llround(t_s_ * 1e9); }
+
+  void Exchange() {
+    for (const CanFrame& frame : to_drives_) {
+      on_wire_s_ += WorstFrameTime_s(frame, can_);
+      for (const auto& drive : drives_) drive->OnFrame(t_s_, frame, {}, &to_master_);
+    }
+    to_drives_.Clear();
+    Deliver();
+  }
+
+  void EndTick() {
+    t_s_ += period_s_;
+    for (const auto& drive : drives_) drive->OnTime(t_s_, {}, &to_master_);
+    Deliver();
+  }
+
+  void Deliver() {
+    for (CanFrame frame : to_master_) {
+      on_wire_s_ += WorstFrameTime_s(frame, can_);
+      frame.stamp_ns = Now_ns();
+      for (const auto& master : masters_) master->OnFrame(frame);
+    }
+    to_master_.Clear();
+  }
+
+  CanBusConfig can_;
+  double period_s_;
+  std::vector<std::unique_ptr<JointDrive>> masters_;
+  std::vector<std::unique_ptr<EmulatedDrive>> drives_;
+  double t_s_ = 0.0;
+  double on_wire_s_ = 0.0;
+  FrameList to_drives_;
+  FrameList to_master_;
+};
 
 }  // namespace
 
-// ISO 11898-1. Start, arbitration, control, data and the CRC sequence are stuffed: at worst, one bit after
-// the first five and then one after every four. The CRC delimiter, acknowledgement, end of frame and
-// intermission are not: 1 + 2 + 7 + 3.
-int WorstFrameBits(const CanFrame& frame) {
-  const int header = frame.extended ? 54 : 34;  // start .. control, and 15 bits of CRC
-  const int stuffed = header + (frame.remote ? 0 : 8 * frame.length);
-  return stuffed + (stuffed - 1) / 4 + 13;
-}
-
-double ArmBusLoad(const ArmEntry& entry, double period_s, double feedback_period_s) {
-  double bits_s = 0.0;
-  for (const JointDriveConfig& joint : entry.joints) {
-    const Traffic traffic = JointTraffic(entry.profile, joint, feedback_period_s);
-    bits_s += traffic.bits_tick / period_s + traffic.bits_s;
+double ArmBusLoad(const ArmEntry& entry, double period_s, const EmulatedDriveConfig& drive) {
+  Conversation conversation(entry, period_s, drive);
+  while (!conversation.BringUpTick()) {
+    if (conversation.time_s() > kBringUp_s) return std::numeric_limits<double>::infinity();
   }
-  return bits_s / kCanBitrate;
+  const double begin_s = conversation.time_s();
+  const double before_s = conversation.on_wire_s();
+  while (conversation.time_s() < begin_s + kMeasured_s) conversation.ControlTick();
+  return (conversation.on_wire_s() - before_s) / (conversation.time_s() - begin_s);
 }
 
 }  // namespace armada

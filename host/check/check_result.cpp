@@ -8,7 +8,7 @@
 namespace armada {
 namespace {
 
-CheckResult BuildFleetCheck(const FleetConfig& fleet, double feedback_period_s) {
+CheckResult BuildFleetCheck(const FleetConfig& fleet, const EmulatedDriveConfig& drive) {
   CheckResult result;
   result.name = fleet.name;
   result.file = fleet.file;
@@ -16,7 +16,7 @@ CheckResult BuildFleetCheck(const FleetConfig& fleet, double feedback_period_s) 
   result.period_s = fleet.timing.period_s;
   result.topologies = CheckTopologies(fleet);
   for (const ArmEntry& arm : fleet.arms) {
-    const double bus_load = ArmBusLoad(arm, fleet.timing.period_s, feedback_period_s);
+    const double bus_load = ArmBusLoad(arm, fleet.timing.period_s, drive);
     result.arms.push_back({arm.id, arm.arm.dof, bus_load, {}, {}});
   }
   return result;
@@ -43,13 +43,13 @@ bool CheckResult::ok() const {
 }
 
 CheckResult BuildCheck(const FleetConfig& fleet) {
-  CheckResult result = BuildFleetCheck(fleet, 0.0);
+  CheckResult result = BuildFleetCheck(fleet, {});
   CollectFindings(fleet, result);
   return result;
 }
 
 CheckResult BuildCheck(const ScenarioConfig& scenario) {
-  CheckResult result = BuildFleetCheck(scenario.fleet, scenario.drive.feedback_period_s);
+  CheckResult result = BuildFleetCheck(scenario.fleet, scenario.drive);
   result.name = scenario.name;
   result.file = scenario.file;
   for (size_t i = 0; i < result.arms.size(); ++i) {

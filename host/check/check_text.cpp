@@ -138,7 +138,7 @@ void PrintArms(const CheckResult& result, std::ostream& out) {
         << " s of motion with perfect control, from an elbow bent\n"
         << kIndent << "to either side; torque of the nominal arm, with the disturbance's amplitude on top.\n";
   }
-  out << kIndent << "Bus load: every frame as long as stuff bits can make it, at 1 Mbit/s.\n";
+  out << kIndent << "Bus load: every frame as long as stuff bits can make it.\n";
 }
 
 }  // namespace

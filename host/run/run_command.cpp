@@ -12,13 +12,18 @@
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/initial_state.h"
 #include "firmware/app/realtime.h"
+#include "firmware/can/bus_name.h"
 #include "hil/scenario_file.h"
 #include "hil/start_state.h"
 #include "host/arm_table.h"
 #include "host/private_network.h"
 #include "host/process_group.h"
+#include "host/run/board_networks.h"
+#include "host/run/run_buses.h"
+#include "host/run/run_in_vm.h"
 #include "host/run/run_recorder.h"
 #include "host/run/run_result.h"
+#include "host/run/virtual_can.h"
 
 namespace armada {
 namespace {
@@ -51,8 +56,8 @@ void RemoveEarlierRun(const fs::path& directory) {
 /// One run of a scenario as processes.
 class Run {
  public:
-  Run(const RunOptions& options, const ScenarioConfig& scenario)
-      : options_(options), scenario_(scenario), out_(options.out) {}
+  Run(const RunOptions& options, ScenarioConfig scenario)
+      : options_(options), scenario_(std::move(scenario)), out_(options.out) {}
 
   bool Prepare(std::string* error);
   bool Execute(std::string* error);
@@ -61,6 +66,8 @@ class Run {
 
  private:
   bool WriteInputs(std::string* error);
+  bool MakeNetworks(std::string* error);
+  bool MakeBoardNetworks(std::string* error);
   bool StartAll(ProcessGroup* group, std::string* error);
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
@@ -73,8 +80,9 @@ class Run {
   std::string Seconds() const { return std::to_string(scenario_.seconds); }
 
   const RunOptions& options_;
-  const ScenarioConfig& scenario_;
+  ScenarioConfig scenario_;
   fs::path out_;
+  VirtualCan virtual_can_;  // before what uses it: removed last
   int64_t epoch_ns_ = 0;
   std::unique_ptr<LcmEndpoint> link_;
   std::unique_ptr<RunRecorder> recorder_;
@@ -101,19 +109,51 @@ bool Run::WriteInputs(std::string* error) {
 }
 
 bool Run::Prepare(std::string* error) {
+  if (!MakeNetworks(error)) return false;
+  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  link_ = url ? LcmEndpoint::Open(*url, error) : nullptr;
+  return link_ != nullptr && WriteInputs(error);
+}
+
+// The boards' LCM leaves their namespaces: one hop at least.
+bool Run::MakeBoardNetworks(std::string* error) {
+  auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  if (!url) return false;
+  url->ttl = std::max(url->ttl, 1);
+  scenario_.fleet.link.lcm_url = ToString(*url);
+  BoardNetworks networks;
+  if (!networks.Enter(error)) return false;
+  for (const ArmEntry& arm : scenario_.fleet.arms) {
+    if (!networks.Add(arm.id, SocketCanInterface(arm.bus), error)) return false;
+  }
+  std::cout << "each board in a network namespace of its own, LCM on " << scenario_.fleet.link.lcm_url
+            << '\n';
+  return true;
+}
+
+bool Run::MakeNetworks(std::string* error) {
+  if (options_.namespaces) return MakeBoardNetworks(error);
   const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
   if (!url) return false;
+  const std::vector<std::string> interfaces = SocketCanInterfaces(scenario_.fleet, options_.hil_buses);
   if (!HasMulticastRoute()) {
-    if (url->ttl > 0) {
-      *error = "no multicast route here, and link.lcm_url has ttl=" + std::to_string(url->ttl) +
-               ": other boards could not be heard; add a route: ip route add 224.0.0.0/4 dev <interface>";
+    // Interfaces that are there would be out of reach in a network of our own, and so would other boards.
+    const bool bound = std::any_of(interfaces.begin(), interfaces.end(), VirtualCan::Exists);
+    if (url->ttl > 0 || bound) {
+      *error =
+          "no multicast route here, and " +
+          (bound ? "the CAN interfaces are of this network"
+                 : "link.lcm_url has ttl=" + std::to_string(url->ttl) + ": other boards could not be heard") +
+          "; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev " +
+          (url->ttl > 0 ? "<interface>" : "lo");
       return false;
     }
     if (!EnterPrivateNetwork(error)) return false;
     std::cout << "no multicast route here: running in a private network namespace\n";
   }
-  link_ = LcmEndpoint::Open(*url, error);
-  return link_ != nullptr && WriteInputs(error);
+  if (!virtual_can_.Provide(interfaces, error)) return false;
+  if (!interfaces.empty()) PrintCanInterfaces(interfaces, virtual_can_.made(), std::cout);
+  return true;
 }
 
 bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv,
@@ -133,20 +173,26 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
              error)) {
     return false;
   }
-  if (!Start(group, "hil",
-             {Program("armada-hil"), In("scenario.toml"), "--seed", std::to_string(options_.seed),
-              "--epoch-ns", epoch, "--seconds", Seconds(), "--out", out_.string()},
-             error)) {
-    return false;
-  }
+  std::vector<std::string> hil = {Program("armada-hil"),
+                                  In("scenario.toml"),
+                                  "--seed",
+                                  std::to_string(options_.seed),
+                                  "--epoch-ns",
+                                  epoch,
+                                  "--seconds",
+                                  Seconds(),
+                                  "--out",
+                                  out_.string()};
+  for (const std::string& bus : options_.hil_buses) hil.insert(hil.end(), {"--bus", bus});
+  if (!Start(group, "hil", std::move(hil), error)) return false;
   for (const ArmEntry& arm : scenario_.fleet.arms) {
     const std::string id = std::to_string(arm.id);
-    if (!Start(group, "arm " + id,
-               {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds",
-                Seconds(), "--initial", In("initial_" + id + ".toml"), "--json", In("arm_" + id + ".json")},
-               error)) {
-      return false;
-    }
+    std::vector<std::string> board;
+    if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
+    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
+                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"), "--json",
+                               In("arm_" + id + ".json")});
+    if (!Start(group, "arm " + id, std::move(board), error)) return false;
   }
   return scenario_.leader.kind == LeaderKind::kNone ||
          Start(group, "leader",
@@ -241,16 +287,16 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
 }  // namespace
 
 int RunRunCommand(const RunOptions& options) {
-  const auto scenario = options.scenario.Load();
+  auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
-  if (options.bus != "udp") {
-    std::cerr << "armada run: --bus " << options.bus
-              << ": this version runs on \"udp\", the user-space bus\n";
+  if (const std::string wrong = ChooseBuses(options, &scenario->fleet); !wrong.empty()) {
+    std::cerr << "armada run: " << wrong << '\n';
     return kExitUsage;
   }
+  if (options.bus == "vm") return RunInVm(options);
   std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
             << " s, seed " << options.seed << ", into " << options.out << std::endl;
-  Run run(options, *scenario);
+  Run run(options, std::move(*scenario));
   std::string error;
   RunMetrics metrics;
   nlohmann::ordered_json json;

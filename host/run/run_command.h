@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "host/scenario_arguments.h"
 
@@ -9,11 +10,14 @@ namespace armada {
 
 struct RunOptions {
   ScenarioArguments scenario;
-  std::string bus = "udp";
+  std::string bus = "udp";             ///< udp, socketcan or vm
+  bool namespaces = false;             ///< socketcan: each board in a network namespace of its own
+  std::vector<std::string> hil_buses;  ///< passed to armada-hil as --bus
   uint64_t seed = 1;
   std::string out = "out/run";
   std::string json;
-  std::string program_directory;  ///< where armada-arm, armada-hil and armada-leader are
+  std::string program_directory;       ///< where armada-arm, armada-hil and armada-leader are
+  std::vector<std::string> arguments;  ///< of the whole command line, for --bus vm
 };
 
 /// `armada run`: the scenario as processes in real time. Starts, watches and stops everything; exit code.

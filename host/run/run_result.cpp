@@ -10,9 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxFrameBits = 135.0;  // classic, 8 bytes, every stuff bit
-constexpr double kBitsPerSecond = 1e6;
-
 std::optional<Json> ReadJson(const std::string& path, std::string* error) {
   std::ifstream file(path);
   if (!file) {
@@ -77,8 +74,7 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
       for (const char* section : {"timing", "memory", "bus"})
         (*json)["arms"][i][section] = boards[i].at(section);
       Json& bus = (*json)["arms"][i]["bus"];
-      const double frames = bus.at("can_sent").get<double>() + bus.at("can_received").get<double>();
-      bus["can_load"] = frames * kMaxFrameBits / (kBitsPerSecond * scenario.seconds);
+      bus["can_load"] = hil->at("arms").at(i).at("bus").at("can_load");
     }
     (*json)["hil"] = {{"name", "hil"}, {"timing", hil->at("timing")}, {"memory", hil->at("memory")}};
   } catch (const nlohmann::json::exception& exception) {

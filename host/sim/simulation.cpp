@@ -6,7 +6,7 @@
 namespace armada {
 namespace {
 
-constexpr double kBringUp_s = 0.5;  // five heartbeats of the slowest drive
+constexpr double kBringUp_s = 1.0;  // the slowest drives are up well before
 
 void Copy(const TaskVector& from, double (&to)[3]) {
   std::copy(from.data(), from.data() + from.size(), to);
@@ -61,7 +61,7 @@ void Simulation::BringUp() {
   for (int64_t k = -std::llround(kBringUp_s / period_s_); k < 0; ++k) {
     for (Arm& arm : arms_) {
       to_drives_.Clear();
-      arm.node.BringUp(&to_drives_);
+      arm.node.BringUp(NanosecondsOf(k), &to_drives_);
       ToDrives(arm, TimeOf(k));
       ToBoard(arm, NanosecondsOf(k));
       arm.bench.AdvanceTo(TimeOf(k + 1), &to_board_);

@@ -32,7 +32,7 @@ class Board : public testing::Test {
         node_(scenario_.fleet, 0, start_.controller, kEpochNs),
         bench_(scenario_, 0, 1, start_, &leader_, -0.5) {
     for (int64_t k = -50; k < 0; ++k) {
-      ready_ = node_.BringUp(&to_drives_);
+      ready_ = node_.BringUp(NanosecondsOf(k), &to_drives_);
       Carry(k);
       Advance(k + 1);
     }

@@ -70,15 +70,16 @@ TEST(BusName, ABadNameIsRefusedWithWhatWasGivenAndWhatIsAllowed) {
   }
 }
 
-TEST(OpenBus, SaysThatSocketCanIsNotInThisVersion) {
+TEST(OpenBus, SaysWhatToDoWithoutAnInterface) {
   std::string error;
-  EXPECT_EQ(OpenBus("socketcan:can0", &error), nullptr);
-  EXPECT_NE(error.find("\"socketcan:can0\": SocketCAN is not in this version"), std::string::npos) << error;
+  EXPECT_EQ(OpenBus("socketcan:nosuchcan", {}, &error), nullptr);
+  EXPECT_NE(error.find("bus socketcan:nosuchcan"), std::string::npos) << error;
+  EXPECT_NE(error.find("sudo "), std::string::npos) << error;
 }
 
 TEST(OpenBus, PassesOnWhatIsWrongWithAName) {
   std::string error;
-  EXPECT_EQ(OpenBus("udp:1.2.3.4:5", &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:1.2.3.4:5", {}, &error), nullptr);
   EXPECT_NE(error.find("1.2.3.4"), std::string::npos) << error;
 }
 

@@ -29,20 +29,30 @@ JointDriveConfig Config(double gear_ratio = 9.0, double direction = -1.0) {
   return config;
 }
 
+constexpr uint32_t kExpired = odrive::WatchdogError(Firmware::kV06);
+
 class ODrive : public testing::Test {
  protected:
   void Hear(AxisState state, uint32_t error = 0) {
-    EXPECT_TRUE(drive_.OnFrame(odrive::EncodeHeartbeat(kNode, Firmware::kV06, {error, state, 0})));
+    EXPECT_EQ(drive_.OnFrame(odrive::EncodeHeartbeat(kNode, Firmware::kV06, {error, state, 0})),
+              Reception::kTaken);
   }
-  /// Number of frames that one call of Enable sends.
-  size_t Enable() {
+  /// Number of frames that one tick of the bring-up sends: 4 arm the axis, 1 feeds its watchdog.
+  size_t Tick() {
     sent_.Clear();
-    drive_.Enable(&sent_);
+    drive_.BringUp(0, &sent_);
     return sent_.size();
   }
-  void BringUp() {
+  /// Up to a watchdog that has been seen to trip.
+  void ProveWatchdog() {
     Hear(AxisState::kIdle);
-    ASSERT_EQ(Enable(), 4u);
+    ASSERT_EQ(Tick(), 4u);
+    Hear(AxisState::kIdle, kExpired);
+    ASSERT_EQ(drive_.watchdog(), DriveWatchdog::kProved);
+  }
+  void BringUp() {
+    ProveWatchdog();
+    ASSERT_EQ(Tick(), 4u);
     Hear(AxisState::kClosedLoop);
     ASSERT_EQ(drive_.state(), DriveState::kTorque);
   }
@@ -52,6 +62,7 @@ class ODrive : public testing::Test {
     drive_.CommandTorque(tau_Nm, &sent_);
     float motor_Nm = NAN;
     EXPECT_EQ(sent_.size(), 1u);
+    EXPECT_TRUE(sent_[0].latest_only) << "of torques only the newest counts";
     EXPECT_TRUE(odrive::DecodeSetInputTorque(sent_[0], kNode, &motor_Nm));
     return motor_Nm;
   }
@@ -60,42 +71,80 @@ class ODrive : public testing::Test {
   FrameList sent_;
 };
 
-TEST_F(ODrive, TheBringUpHasTheseBytes) {
+TEST_F(ODrive, IsArmedWithTheseBytes) {
   Hear(AxisState::kIdle);
-  ASSERT_EQ(Enable(), 4u);
+  ASSERT_EQ(Tick(), 4u);
   EXPECT_EQ(Describe(sent_[0]), Describe(DataFrame(0x78, {0}))) << "clear errors";
   EXPECT_EQ(Describe(sent_[1]), Describe(DataFrame(0x6B, {1, 0, 0, 0, 1, 0, 0, 0}))) << "torque, passthrough";
   EXPECT_EQ(Describe(sent_[2]), Describe(DataFrame(0x6E, {0, 0, 0, 0}))) << "no torque left from before";
   EXPECT_EQ(Describe(sent_[3]), Describe(DataFrame(0x67, {8, 0, 0, 0}))) << "closed loop";
 }
 
-TEST_F(ODrive, IsUnknownUntilHeardAndIsNotEnabledUnheard) {
+TEST_F(ODrive, IsUnknownUntilHeardAndIsNotArmedUnheard) {
   EXPECT_EQ(drive_.state(), DriveState::kUnknown);
-  EXPECT_EQ(Enable(), 0u);
+  EXPECT_EQ(drive_.Explain(), "no heartbeat heard");
+  EXPECT_EQ(Tick(), 0u);
   Hear(AxisState::kIdle);
   EXPECT_EQ(drive_.state(), DriveState::kIdle);
-  EXPECT_EQ(Enable(), 4u);
+  EXPECT_EQ(Tick(), 4u);
   EXPECT_EQ(drive_.state(), DriveState::kEnabling);
-  Hear(AxisState::kClosedLoop);
-  EXPECT_EQ(drive_.state(), DriveState::kTorque);
-  EXPECT_EQ(Enable(), 0u);
 }
 
-TEST_F(ODrive, TheBringUpIsRepeatedOnceForTwoHeartbeatsThatDoNotConfirmIt) {
+TEST_F(ODrive, IsLeftAloneOnceArmedUntilItsWatchdogHasTripped) {
   Hear(AxisState::kIdle);
-  ASSERT_EQ(Enable(), 4u);
-  for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(Enable(), 0u) << "no rate of calls makes it faster";
-  Hear(AxisState::kIdle);  // may have been under way when the bring-up was sent
-  ASSERT_EQ(Enable(), 0u);
+  ASSERT_EQ(Tick(), 4u);
+  Hear(AxisState::kClosedLoop);
+  for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(Tick(), 0u) << "any frame would feed it";
+  EXPECT_EQ(drive_.state(), DriveState::kEnabling) << "armed, but not proved";
+  Hear(AxisState::kIdle, kExpired);
+  EXPECT_EQ(drive_.watchdog(), DriveWatchdog::kProved);
+  EXPECT_EQ(Tick(), 4u);
+  EXPECT_EQ(Tick(), 1u) << "fed from now on";
+  Hear(AxisState::kClosedLoop);
+  EXPECT_EQ(drive_.state(), DriveState::kTorque);
+  EXPECT_EQ(Tick(), 1u);
+}
+
+TEST_F(ODrive, AWatchdogThatDoesNotTripIsRefused) {
   Hear(AxisState::kIdle);
-  ASSERT_EQ(Enable(), 4u);
-  ASSERT_EQ(Enable(), 0u);
+  ASSERT_EQ(Tick(), 4u);
+  int heartbeats = 0;
+  while (drive_.watchdog() == DriveWatchdog::kUnproved && heartbeats < 100) {
+    Hear(AxisState::kClosedLoop);
+    ++heartbeats;
+    Tick();
+  }
+  EXPECT_EQ(heartbeats, 3) << "30 ms, and two heartbeats that may have been under way";
+  EXPECT_EQ(drive_.watchdog(), DriveWatchdog::kOff);
+  EXPECT_EQ(drive_.state(), DriveState::kFault);
+  ASSERT_EQ(sent_.size(), 1u);
+  EXPECT_EQ(Describe(sent_[0]), Describe(DataFrame(0x67, {1, 0, 0, 0}))) << "disarmed again";
+  EXPECT_NE(drive_.Explain().find("watchdog is off"), std::string::npos);
+  EXPECT_EQ(Tick(), 0u);
+}
+
+TEST_F(ODrive, AWatchdogThatHasTrippedBeforeNeedNoFurtherProof) {
+  Hear(AxisState::kIdle, kExpired);
+  EXPECT_EQ(drive_.watchdog(), DriveWatchdog::kProved);
+  EXPECT_EQ(Tick(), 4u);
+  Hear(AxisState::kClosedLoop);
+  EXPECT_EQ(drive_.state(), DriveState::kTorque);
+}
+
+TEST_F(ODrive, IsArmedAgainForTwoHeartbeatsThatDoNotConfirmIt) {
+  ProveWatchdog();
+  ASSERT_EQ(Tick(), 4u);
+  for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(Tick(), 1u) << "no rate of calls makes it faster";
+  Hear(AxisState::kIdle);  // may have been under way when it was armed
+  ASSERT_EQ(Tick(), 1u);
+  Hear(AxisState::kIdle);
+  ASSERT_EQ(Tick(), 4u);
 }
 
 TEST_F(ODrive, ADriveThatIsMerelySlowIsWaitedFor) {
-  Hear(AxisState::kIdle);
+  ProveWatchdog();
   for (int i = 0; i < 50; ++i) {
-    Enable();
+    Tick();
     Hear(AxisState::kIdle);
   }
   EXPECT_EQ(drive_.state(), DriveState::kEnabling);
@@ -106,46 +155,36 @@ TEST_F(ODrive, ADriveThatIsMerelySlowIsWaitedFor) {
 TEST_F(ODrive, ClosedLoopThatWasNotAskedForIsNotTorque) {
   Hear(AxisState::kClosedLoop);
   EXPECT_EQ(drive_.state(), DriveState::kIdle) << "its control mode is unknown";
-  EXPECT_EQ(Enable(), 4u);
+  EXPECT_EQ(Tick(), 4u);
 }
 
-TEST_F(ODrive, AnErrorFromBeforeIsClearedByTheBringUp) {
+TEST_F(ODrive, AnErrorThatStaysIsAFaultAfterABoundedNumberOfAttempts) {
   Hear(AxisState::kIdle, kSomeError);
-  EXPECT_EQ(drive_.state(), DriveState::kIdle);
-  EXPECT_EQ(drive_.error_code(), kSomeError);
-  EXPECT_EQ(Enable(), 4u);
-  Hear(AxisState::kClosedLoop);
-  EXPECT_EQ(drive_.state(), DriveState::kTorque);
-  EXPECT_EQ(drive_.error_code(), 0u);
-}
-
-TEST_F(ODrive, AnErrorThatStaysIsAFaultAfterABoundedNumberOfBringUps) {
-  Hear(AxisState::kIdle, kSomeError);
-  int bring_ups = 0;
+  EXPECT_EQ(drive_.state(), DriveState::kIdle) << "an error from before";
+  int attempts = 0;
   for (int i = 0; i < 100; ++i) {
-    bring_ups += Enable() > 0;
+    attempts += Tick() == 4;
     Hear(AxisState::kIdle, kSomeError);
   }
-  EXPECT_EQ(bring_ups, ODriveCanSimple::kMaxAttempts);
+  EXPECT_EQ(attempts, ODriveCanSimple::kMaxAttempts);
   EXPECT_EQ(drive_.state(), DriveState::kFault);
   EXPECT_EQ(drive_.error_code(), kSomeError);
+  EXPECT_EQ(drive_.Explain(), "axis error 0x20");
 }
 
 TEST_F(ODrive, AFaultInTorqueIsFinalUntilReset) {
   BringUp();
   Hear(AxisState::kIdle, kSomeError);
   EXPECT_EQ(drive_.state(), DriveState::kFault);
-  EXPECT_EQ(Enable(), 0u);
+  EXPECT_EQ(Tick(), 0u);
   Hear(AxisState::kIdle);  // cleared by someone else
   EXPECT_EQ(drive_.state(), DriveState::kIdle);
-  EXPECT_EQ(Enable(), 0u);
+  EXPECT_EQ(Tick(), 0u);
   Hear(AxisState::kClosedLoop);  // armed by someone else
   EXPECT_EQ(drive_.state(), DriveState::kIdle);
-  EXPECT_EQ(Enable(), 0u);
+  EXPECT_EQ(Tick(), 0u);
   drive_.Reset();
-  EXPECT_EQ(Enable(), 4u);
-  Hear(AxisState::kClosedLoop);
-  EXPECT_EQ(drive_.state(), DriveState::kTorque);
+  BringUp();
 }
 
 TEST_F(ODrive, ADriveThatLeavesClosedLoopByItselfIsNotArmedAgain) {
@@ -154,13 +193,13 @@ TEST_F(ODrive, ADriveThatLeavesClosedLoopByItselfIsNotArmedAgain) {
   EXPECT_EQ(drive_.state(), DriveState::kIdle);
   for (int i = 0; i < 10; ++i) {
     Hear(AxisState::kIdle);
-    EXPECT_EQ(Enable(), 0u);
+    EXPECT_EQ(Tick(), 0u);
   }
 }
 
 TEST_F(ODrive, DisableAsksForIdleAndEndsTheBringUp) {
-  Hear(AxisState::kIdle);
-  ASSERT_EQ(Enable(), 4u);
+  ProveWatchdog();
+  ASSERT_EQ(Tick(), 4u);
   sent_.Clear();
   drive_.Disable(&sent_);
   ASSERT_EQ(sent_.size(), 1u);
@@ -169,11 +208,28 @@ TEST_F(ODrive, DisableAsksForIdleAndEndsTheBringUp) {
   Hear(AxisState::kIdle);
   Hear(AxisState::kIdle);
   EXPECT_EQ(drive_.state(), DriveState::kIdle);
-  EXPECT_EQ(Enable(), 0u);
+  EXPECT_EQ(Tick(), 0u);
+}
+
+TEST_F(ODrive, QuickStopIsTheDrivesEmergencyStop) {
+  BringUp();
+  sent_.Clear();
+  drive_.QuickStop(&sent_);
+  ASSERT_EQ(sent_.size(), 1u);
+  EXPECT_EQ(Describe(sent_[0]), Describe(DataFrame(0x62, {})));
+  EXPECT_EQ(Tick(), 0u);
+}
+
+TEST_F(ODrive, AsksTheKernelForItsOwnFramesOnly) {
+  const std::vector<CanFilter> filters = drive_.Filters();
+  ASSERT_EQ(filters.size(), 1u);
+  EXPECT_TRUE(Passes(filters[0], odrive::EncodeHeartbeat(kNode, Firmware::kV06, {})));
+  EXPECT_TRUE(Passes(filters[0], odrive::EncodeSetInputTorque(kNode, 1.0f))) << "the echo proves it was sent";
+  EXPECT_FALSE(Passes(filters[0], odrive::EncodeHeartbeat(kNode + 1, Firmware::kV06, {})));
 }
 
 TEST_F(ODrive, ASampleIsAskedForWithARemoteFrame) {
-  drive_.RequestSample(&sent_);
+  drive_.RequestSample(0, &sent_);
   ASSERT_EQ(sent_.size(), 1u);
   EXPECT_EQ(Describe(sent_[0]), "105 0 1 0 0 0 0 8 -");
 }
@@ -182,28 +238,30 @@ TEST_F(ODrive, ASampleIsConvertedToTheJoint) {
   EXPECT_EQ(drive_.sample().sequence, 0u);
   CanFrame frame = odrive::EncodeEncoderEstimates(kNode, {4.5f, -9.0f});
   frame.stamp_ns = 1234;
-  ASSERT_TRUE(drive_.OnFrame(frame));
+  ASSERT_EQ(drive_.OnFrame(frame), Reception::kTaken);
   // Nine motor turns a joint turn, backwards: 4.5 turns are -half a joint turn, from 0.5 rad.
   EXPECT_DOUBLE_EQ(drive_.sample().position_rad, 0.5 - std::numbers::pi);
   EXPECT_DOUBLE_EQ(drive_.sample().velocity_rad_s, 2.0 * std::numbers::pi);
   EXPECT_EQ(drive_.sample().stamp_ns, 1234);
   EXPECT_EQ(drive_.sample().sequence, 1u);
-  ASSERT_TRUE(drive_.OnFrame(frame));
+  ASSERT_EQ(drive_.OnFrame(frame), Reception::kTaken);
   EXPECT_EQ(drive_.sample().sequence, 2u);
 }
 
 TEST_F(ODrive, BadFeedbackIsAsIfItHadNotCome) {
-  ASSERT_TRUE(drive_.OnFrame(odrive::EncodeEncoderEstimates(kNode, {4.5f, -9.0f})));
+  ASSERT_EQ(drive_.OnFrame(odrive::EncodeEncoderEstimates(kNode, {4.5f, -9.0f})), Reception::kTaken);
   const double position_rad = drive_.sample().position_rad;
   CanFrame cut = odrive::EncodeEncoderEstimates(kNode, {1.0f, 1.0f});
   cut.length = 7;
-  for (const CanFrame& bad :
-       {cut, odrive::EncodeEncoderEstimates(kNode, {NAN, 1.0f}),
-        odrive::EncodeEncoderEstimates(kNode, {1.0f, INFINITY}),
-        odrive::EncodeEncoderEstimates(kNode + 1, {1.0f, 1.0f}), odrive::EncodeEncoderRequest(kNode),
+  for (const CanFrame& bad : {cut, odrive::EncodeEncoderEstimates(kNode, {NAN, 1.0f}),
+                              odrive::EncodeEncoderEstimates(kNode, {1.0f, INFINITY})}) {
+    EXPECT_EQ(drive_.OnFrame(bad), Reception::kMalformed) << Describe(bad);
+  }
+  for (const CanFrame& others :
+       {odrive::EncodeEncoderEstimates(kNode + 1, {1.0f, 1.0f}), odrive::EncodeEncoderRequest(kNode),
         odrive::EncodeHeartbeat(kNode + 1, Firmware::kV06, {kSomeError, AxisState::kClosedLoop, 0}),
         odrive::EncodeSetInputTorque(kNode, 1.0f)}) {
-    EXPECT_FALSE(drive_.OnFrame(bad)) << Describe(bad);
+    EXPECT_EQ(drive_.OnFrame(others), Reception::kNotMine) << Describe(others);
   }
   EXPECT_EQ(drive_.sample().sequence, 1u);
   EXPECT_EQ(drive_.sample().position_rad, position_rad);
@@ -246,22 +304,25 @@ TEST(ODriveTorque, NeverPassesTheLimitNotEvenByRounding) {
 }
 
 TEST(ODriveFirmware, V05AndV06HeartbeatsAreReadTheirOwnWay) {
-  ODriveCanSimple old_drive(Config(), Firmware::kV05);
+  JointDriveConfig config = Config();
+  config.profile = DriveProfile::kODriveCanSimpleV05;
+  ODriveCanSimple old_drive(config);
   const CanFrame frame = DataFrame(0x61, {0, 0, 0, 0, 8, 1, 0, 0});  // 0.5: motor failed; 0.6: busy
-  ASSERT_TRUE(old_drive.OnFrame(frame));
+  ASSERT_EQ(old_drive.OnFrame(frame), Reception::kTaken);
   EXPECT_EQ(old_drive.error_code(), 0x40u);
-  ODriveCanSimple new_drive(Config(), Firmware::kV06);
-  ASSERT_TRUE(new_drive.OnFrame(frame));
+  ODriveCanSimple new_drive(Config());
+  ASSERT_EQ(new_drive.OnFrame(frame), Reception::kTaken);
   EXPECT_EQ(new_drive.error_code(), 0u);
 }
 
 TEST_F(ODrive, NothingAllocates) {
   const LimitMalloc guard;
   Hear(AxisState::kIdle);
-  drive_.Enable(&sent_);
+  drive_.BringUp(0, &sent_);
   drive_.OnFrame(odrive::EncodeEncoderEstimates(kNode, {4.5f, -9.0f}));
-  drive_.RequestSample(&sent_);
+  drive_.RequestSample(0, &sent_);
   drive_.CommandTorque(1.0, &sent_);
+  drive_.QuickStop(&sent_);
   drive_.Disable(&sent_);
   drive_.Reset();
 }

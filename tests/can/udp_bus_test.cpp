@@ -87,7 +87,7 @@ TEST_F(UdpBus, AnotherProcessOnTheHostReceivesAFrame) {
   const pid_t child = fork();
   if (child == 0) {
     const auto other = Open();
-    other->Send(question);
+    if (other->Send(question) != BusStatus::kOk) _exit(2);
     CanFrame answer;
     const bool answered = other->Receive(kForever_ns, &answer) == BusStatus::kOk && answer.id == 0x101;
     _exit(answered ? 0 : 1);
@@ -261,10 +261,11 @@ TEST_F(UdpBus, SendAndReceiveAllocateNothing) {
     const CanFrame frame = RandomFrame(&random);
     stranger.Send(std::array<uint8_t, 2>{0x81, 0xA1});
     const LimitMalloc guard;
-    sender->Send(frame);
-    receiver->Receive(kForever_ns, &received);
-    receiver->Receive(kPoll, &received);
-    sender->Receive(kPoll, &received);
+    ASSERT_EQ(sender->Send(frame), BusStatus::kOk);
+    ASSERT_EQ(sender->Flush(kPoll), BusStatus::kOk);
+    ASSERT_EQ(receiver->Receive(kForever_ns, &received), BusStatus::kOk);
+    ASSERT_EQ(receiver->Receive(kPoll, &received), BusStatus::kTimeout);
+    ASSERT_EQ(sender->Receive(kPoll, &received), BusStatus::kTimeout);
   }
   EXPECT_EQ(receiver->counters().received, 100u);
   EXPECT_EQ(receiver->counters().malformed, 100u);
@@ -277,7 +278,7 @@ TEST_F(UdpBus, APortHeldByAnotherProgramIsReported) {
   any.sin_port = htons(kPort);
   ASSERT_EQ(bind(holder.get(), reinterpret_cast<sockaddr*>(&any), sizeof any), 0);
   std::string error;
-  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, &error), nullptr);
   EXPECT_NE(error.find("udp:239.74.163.11:43113: cannot bind"), std::string::npos) << error;
   EXPECT_NE(error.find("Another program holds the port"), std::string::npos) << error;
 }
@@ -285,7 +286,7 @@ TEST_F(UdpBus, APortHeldByAnotherProgramIsReported) {
 TEST(UdpBusWithoutRoute, SaysHowToMakeOne) {
   ASSERT_EQ(EnterPrivateNetwork(MulticastRoute::kNo), "");
   std::string error;
-  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, &error), nullptr);
   EXPECT_NE(error.find("udp:239.74.163.11:43113"), std::string::npos) << error;
   EXPECT_NE(error.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << error;
 }

@@ -57,7 +57,7 @@ kind = "near_leader"
 [disturbance]
 kind = "none"
 [drive]
-watchdog_s = 0.0
+watchdog_s = 0.2
 )";
 
 /// The board's side of the arm: both drives, on a bus object of its own.
@@ -65,7 +65,7 @@ class Board {
  public:
   Board() {
     std::string error;
-    bus_ = OpenBus(kBus, &error);
+    bus_ = OpenBus(kBus, {}, &error);
     EXPECT_NE(bus_, nullptr) << error;
   }
 
@@ -75,7 +75,7 @@ class Board {
     for (int64_t tick_ns = MonotonicNow(); tick_ns < end_ns; tick_ns += 10'000'000) {
       FrameList out;
       action(&out);
-      for (const CanFrame& frame : out) bus_->Send(frame);
+      for (const CanFrame& frame : out) EXPECT_EQ(bus_->Send(frame), BusStatus::kOk);
       CanFrame frame;
       while (bus_->Receive(tick_ns + 10'000'000, &frame) == BusStatus::kOk) {
         for (ODriveCanSimple& drive : drives) drive.OnFrame(frame);
@@ -144,11 +144,11 @@ TEST_F(HilProcessTest, IsAnArmThatABoardBringsUpAndMoves) {
     return board.drives[0].state() == DriveState::kTorque && board.drives[1].state() == DriveState::kTorque;
   };
   ASSERT_TRUE(board.Until(in_torque, [&](FrameList* out) {
-    for (ODriveCanSimple& drive : board.drives) drive.Enable(out);
+    for (ODriveCanSimple& drive : board.drives) drive.BringUp(MonotonicNow(), out);
   })) << Said("hil");
 
   const auto request = [&](FrameList* out) {
-    for (ODriveCanSimple& drive : board.drives) drive.RequestSample(out);
+    for (ODriveCanSimple& drive : board.drives) drive.RequestSample(MonotonicNow(), out);
   };
   ASSERT_TRUE(board.Until([&] { return board.drives[1].sample().sequence > 0; }, request));
   const double start_rad = board.drives[0].sample().position_rad;
@@ -227,7 +227,7 @@ TEST_F(HilProcessTest, RefusesABusOnWhichADriveIsActive) {
   Start("second", {Scenario(), "--out", Out()});
   EXPECT_EQ(ExitCode(), kExitFailed);
   EXPECT_EQ(Said("second"), std::string("armada-hil: bus ") + kBus +
-                                ": another emulation or drive is already active (heartbeat of node 1)\n");
+                                ": another emulation or drive is already active (frames of node 1)\n");
   EXPECT_FALSE(std::filesystem::exists(Out()));
   EXPECT_TRUE(Board().UntilHeard()) << "the first goes on";
 }

@@ -38,6 +38,8 @@ class MemoryBus final : public CanBus {
   int64_t NextArrival() const { return next_ < coming_.size() ? coming_[next_].stamp_ns : INT64_MAX; }
 
   BusStatus Send(const CanFrame& frame) override;
+  BusStatus Flush(int64_t) override { return BusStatus::kOk; }
+  void DropWaiting() override {}
   BusStatus Receive(int64_t deadline_ns, CanFrame* frame) override;
   int descriptor() const override { return -1; }
 
@@ -347,20 +349,20 @@ TEST(HilServer, AllocatesNothingWhileItRuns) {
 
 TEST(HilServer, HearsADriveThatIsActiveBeforeTheStart) {
   Rig rig;
-  rig.Bus(1).Schedule(rig.clock.now_ns + 20 * kMs, odrive::EncodeEncoderRequest(4));
-  rig.Bus(1).Schedule(rig.clock.now_ns + 90 * kMs, odrive::EncodeHeartbeat(5, odrive::Firmware::kV06, {}));
-  const auto drive = FindActiveDrive(rig.buses, 150 * kMs, &rig.clock);
+  rig.Bus(1).Schedule(rig.clock.now_ns + 20 * kMs, odrive::EncodeEncoderRequest(1));
+  rig.Bus(1).Schedule(rig.clock.now_ns + 90 * kMs, odrive::EncodeHeartbeat(2, odrive::Firmware::kV06, {}));
+  const auto drive = FindActiveDrive(Scenario().fleet, rig.buses, 150 * kMs, &rig.clock);
   ASSERT_TRUE(drive.has_value());
   EXPECT_EQ(drive->bus, 1u);
-  EXPECT_EQ(drive->node_id, 5);
+  EXPECT_EQ(drive->node_id, 2);
 }
 
 TEST(HilServer, HearsNoDriveInTheFramesOfABoard) {
   Rig rig;
   rig.ScheduleBoard(0);
-  rig.Bus(0).Schedule(rig.clock.now_ns + 151 * kMs, odrive::EncodeHeartbeat(5, odrive::Firmware::kV06, {}));
+  rig.Bus(0).Schedule(rig.clock.now_ns + 151 * kMs, odrive::EncodeHeartbeat(1, odrive::Firmware::kV06, {}));
   const int64_t start_ns = rig.clock.now_ns;
-  EXPECT_FALSE(FindActiveDrive(rig.buses, 150 * kMs, &rig.clock).has_value());
+  EXPECT_FALSE(FindActiveDrive(Scenario().fleet, rig.buses, 150 * kMs, &rig.clock).has_value());
   EXPECT_EQ(rig.clock.now_ns - start_ns, 150 * kMs);
 }
 

@@ -25,8 +25,10 @@ constexpr int kNode = 3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr JointTruth kTruth{0.7, -1.5};
 
-JointDriveConfig Joint() {
+JointDriveConfig Joint(Firmware firmware = Firmware::kV06) {
   JointDriveConfig joint;
+  joint.profile =
+      firmware == Firmware::kV05 ? DriveProfile::kODriveCanSimpleV05 : DriveProfile::kODriveCanSimple;
   joint.node_id = kNode;
   joint.gear_ratio = 10.0;
   joint.direction = -1.0;
@@ -38,8 +40,9 @@ JointDriveConfig Joint() {
 /// An emulated axis with a bus that keeps what it sends.
 class Bench {
  public:
-  explicit Bench(const EmulatedDriveConfig& config = {}, uint64_t seed = 1)
-      : firmware(config.firmware), axis(Joint(), config, seed) {}
+  explicit Bench(const EmulatedDriveConfig& config = {}, uint64_t seed = 1,
+                 Firmware generation = Firmware::kV06)
+      : firmware(generation), axis(Joint(generation), config, seed) {}
 
   void Send(double t_s, const CanFrame& frame) { axis.OnFrame(t_s, frame, kTruth, &sent); }
   void Advance(double t_s) { axis.OnTime(t_s, kTruth, &sent); }
@@ -154,9 +157,7 @@ class Generation : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Both, Generation, testing::Values(Firmware::kV05, Firmware::kV06), Name);
 
 TEST_P(Generation, SilenceTripsTheWatchdogAtItsTimeAndLatchesAnError) {
-  EmulatedDriveConfig config;
-  config.firmware = GetParam();
-  Bench bench(config);
+  Bench bench({}, 1, GetParam());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   const double expiry_s = 1.0 + 0.03;
@@ -181,9 +182,7 @@ TEST_P(Generation, SilenceTripsTheWatchdogAtItsTimeAndLatchesAnError) {
 }
 
 TEST_P(Generation, AnEmergencyStopDisarmsAndLatches) {
-  EmulatedDriveConfig config = NoWatchdog();
-  config.firmware = GetParam();
-  Bench bench(config);
+  Bench bench(NoWatchdog(), 1, GetParam());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   bench.Send(1.01, odrive::EncodeEstop(kNode));
@@ -223,7 +222,7 @@ TEST(ODriveEmulator, TheMastersCodecReadsBackTheJoint) {
   Bench bench;
   ODriveCanSimple master(Joint());
   bench.Estimates(0.0, {-2.25, 3.5});
-  ASSERT_TRUE(master.OnFrame(bench.sent[0]));
+  ASSERT_EQ(master.OnFrame(bench.sent[0]), Reception::kTaken);
   EXPECT_NEAR(master.sample().position_rad, -2.25, 1e-6);
   EXPECT_NEAR(master.sample().velocity_rad_s, 3.5, 1e-6);
 }
@@ -329,22 +328,20 @@ TEST(ODriveEmulator, FramesItDoesNotKnowOrThatAreCutChangeNothing) {
 
 /// The master's codec and the drive on a bus that may lose frames, at 100 Hz.
 struct Loop {
-  explicit Loop(Firmware generation) : master(Joint(), generation), bench(Drive(generation)) {}
+  explicit Loop(Firmware generation) : master(Joint(generation)), bench({}, 1, generation) {}
 
-  static EmulatedDriveConfig Drive(Firmware generation) {
-    EmulatedDriveConfig config;
-    config.firmware = generation;
-    return config;
-  }
   template <class Lose>
-  void Tick(bool enable, double tau_Nm, Lose lose) {
+  void Tick(double tau_Nm, Lose lose) {
     const double t_s = 0.01 * ++ticks;
     bench.sent.Clear();
     bench.Advance(t_s);
     from_master.Clear();
-    if (enable) master.Enable(&from_master);
-    master.RequestSample(&from_master);
-    if (master.state() == DriveState::kTorque) master.CommandTorque(tau_Nm, &from_master);
+    if (master.state() == DriveState::kTorque) {
+      master.RequestSample(0, &from_master);
+      master.CommandTorque(tau_Nm, &from_master);
+    } else {
+      master.BringUp(0, &from_master);
+    }
     for (const CanFrame& frame : from_master) {
       if (!lose()) bench.Send(t_s, frame);
     }
@@ -365,7 +362,7 @@ TEST_P(Generation, TheMasterBringsItUpFromAWatchdogErrorAndDrivesIt) {
   Loop loop(GetParam());
   for (int i = 0; i < 20; ++i)
     loop.bench.Advance(0.01 * ++loop.ticks);  // nobody feeds it: the error is there
-  for (int i = 0; i < 40; ++i) loop.Tick(true, 45.0, kLoseNothing);
+  for (int i = 0; i < 60; ++i) loop.Tick(45.0, kLoseNothing);
   EXPECT_EQ(loop.master.state(), DriveState::kTorque);
   EXPECT_EQ(loop.master.error_code(), 0u);
   EXPECT_NEAR(loop.bench.axis.Torque(0.01 * loop.ticks + 0.005), 45.0, 1e-5);
@@ -375,8 +372,8 @@ TEST_P(Generation, AnInputLeftFromBeforeDoesNotFireWhenTheMasterArms) {
   Loop loop(GetParam());
   loop.bench.SetTorque(0.0, 5.0f);
   double largest_Nm = 0.0;
-  for (int i = 0; i < 40; ++i) {
-    loop.Tick(true, 0.0, kLoseNothing);
+  for (int i = 0; i < 60; ++i) {
+    loop.Tick(0.0, kLoseNothing);
     for (const double after_s : {0.0, 0.0005, 0.001, 0.009}) {
       largest_Nm = std::max(largest_Nm, std::abs(loop.bench.axis.Torque(0.01 * loop.ticks + after_s)));
     }
@@ -391,22 +388,22 @@ TEST(ODriveEmulator, ABusThatLosesFramesDelaysTheBringUpButDoesNotStopIt) {
     std::mt19937_64 random(seed);
     const auto lose_one_in_ten = [&] { return random() % 10 == 0; };
     for (int i = 0; i < 300 && loop.master.state() != DriveState::kTorque; ++i)
-      loop.Tick(true, 0.0, lose_one_in_ten);
+      loop.Tick(0.0, lose_one_in_ten);
     ASSERT_EQ(loop.master.state(), DriveState::kTorque) << "seed " << seed;
   }
 }
 
 TEST(ODriveEmulator, AfterAWatchdogTripTheMasterDoesNotArmAgainByItself) {
   Loop loop(Firmware::kV06);
-  for (int i = 0; i < 40; ++i) loop.Tick(true, 45.0, kLoseNothing);
+  for (int i = 0; i < 60; ++i) loop.Tick(45.0, kLoseNothing);
   ASSERT_EQ(loop.master.state(), DriveState::kTorque);
   loop.ticks += 10;  // the master is silent for 100 ms
-  for (int i = 0; i < 100; ++i) loop.Tick(true, 45.0, kLoseNothing);
+  for (int i = 0; i < 100; ++i) loop.Tick(45.0, kLoseNothing);
   EXPECT_EQ(loop.master.state(), DriveState::kFault);
   EXPECT_EQ(loop.master.error_code(), odrive::WatchdogError(Firmware::kV06));
   EXPECT_EQ(loop.bench.axis.Torque(0.01 * loop.ticks), 0.0);
   loop.master.Reset();
-  for (int i = 0; i < 40; ++i) loop.Tick(true, 45.0, kLoseNothing);
+  for (int i = 0; i < 60; ++i) loop.Tick(45.0, kLoseNothing);
   EXPECT_EQ(loop.master.state(), DriveState::kTorque);
 }
 

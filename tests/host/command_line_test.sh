@@ -41,7 +41,7 @@ expect 78 '[Ll]eader|reach' "$armada" sim "$scenario" --set 'graph=[{pins=[1],ed
 expect 2 'no such arm' "$bin/armada-arm" "$fleet" --arm 99
 expect 2 'seeds 9:1' "$armada" sweep "$scenario" --seeds 9:1
 expect 2 'shard 3/2' "$armada" sweep "$scenario" --shard 3/2
-expect 2 'this version' "$armada" run "$scenario" --bus socketcan
+expect 2 'there are udp' "$armada" run "$scenario" --bus nonsense
 expect 2 'unknown|not expected|required' "$armada" fly
 own_network=(unshare --net)
 [ "$(id -u)" = 0 ] || own_network+=(--user --map-root-user)

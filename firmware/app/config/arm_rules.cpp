@@ -4,6 +4,8 @@
 #include "firmware/app/config/fleet_rules.h"
 #include "firmware/app/config/value_text.h"
 #include "firmware/can/bus_name.h"
+#include "firmware/can/make_drive.h"
+#include "firmware/can/value_format.h"
 
 namespace armada {
 namespace {
@@ -97,14 +99,46 @@ class ArmRules {
     if (std::abs(joint.direction) != 1.0) {
       Report(at.At("direction"), "given " + ValueText(joint.direction) + ", allowed are 1 and -1", errors_);
     }
+    const NodeIdRange ids = NodeIdsOf(joint.profile);
+    if (joint.node_id < ids.min || joint.node_id > ids.max) {
+      Report(at.At("node_id"),
+             "given " + std::to_string(joint.node_id) + ", allowed for a drive of " +
+                 ValueText(joint.profile) + " is " + std::to_string(ids.min) + " to " +
+                 std::to_string(ids.max),
+             errors_);
+      return;
+    }
     for (size_t j = 0; j < i; ++j) {
-      if (arm_.joint[j].node_id != joint.node_id) continue;
+      if (arm_.joint[j].node_id != joint.node_id) {
+        if (CheckIdentifiers(i, j, at)) continue;
+        break;
+      }
       Report(at.At("node_id"),
              "given " + std::to_string(joint.node_id) + ", the node id of joint " + std::to_string(j + 1) +
                  " on the same bus, too",
              errors_);
       break;
     }
+  }
+
+  /// No frame of one joint's drive may be taken for one of another's. False, and reported, when it could be.
+  bool CheckIdentifiers(size_t i, size_t j, const ConfigCursor& at) {
+    for (const CanMessage& a : MessagesOf(arm_.joint[i])) {
+      for (const CanMessage& b : MessagesOf(arm_.joint[j])) {
+        if (a.id != b.id || a.extended != b.extended || a.fd != b.fd) continue;
+        const bool broadcast = !a.from_drive && !b.from_drive && std::string_view(a.name) == b.name;
+        const bool told_apart =
+            a.multiplexor >= 0 && b.multiplexor >= 0 && a.multiplexor_raw != b.multiplexor_raw;
+        if (broadcast || told_apart) continue;
+        Report(at.At("node_id"),
+               "with " + std::to_string(arm_.joint[i].node_id) + " the frame " + a.name +
+                   " has the identifier " + Hexadecimal(a.id, 3) + " of joint " + std::to_string(j + 1) +
+                   "'s frame " + b.name + "; allowed are addresses that keep them apart",
+               errors_);
+        return false;
+      }
+    }
+    return true;
   }
 
   void CheckCount(const char* key, Eigen::Index count, int wanted, const char* of) {

@@ -41,9 +41,15 @@ constexpr auto EnumNames(SubtaskKind) {
 }
 
 constexpr auto EnumNames(DriveProfile) {
+  using enum DriveProfile;
   return std::to_array<std::pair<DriveProfile, std::string_view>>(
-      {{DriveProfile::kODriveCanSimple, "odrive_cansimple"},
-       {DriveProfile::kODriveCanSimpleV05, "odrive_cansimple_v05"}});
+      {{kODriveCanSimple, "odrive_cansimple"},
+       {kODriveCanSimpleV05, "odrive_cansimple_v05"},
+       {kMiniCheetah, "mini_cheetah"},
+       {kCubeMars, "cubemars"},
+       {kDamiao, "damiao"},
+       {kCia402, "cia402"},
+       {kMoteus, "moteus"}});
 }
 
 template <class Enum>

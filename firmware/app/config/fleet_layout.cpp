@@ -11,7 +11,7 @@ ArmEntry EntryOf(const ArmLayout& layout) {
   entry.id = layout.id;
   entry.arm = PlanarArmOf(layout);
   entry.bus = layout.bus;
-  entry.profile = layout.drive;
+  entry.can = layout.can;
   entry.joints = layout.joint;
   entry.control = layout.control;
   entry.control.gains.Expand(entry.arm.dof, PlanarArm::kTaskDim);
@@ -22,7 +22,13 @@ ArmLayout ArmLayoutOf(const ArmEntry& entry) {
   ArmLayout layout;
   layout.id = entry.id;
   layout.bus = entry.bus;
-  layout.drive = entry.profile;
+  layout.can = entry.can;
+  const JointDriveConfig& first = entry.joints.front();
+  layout.drive = first.profile;
+  layout.watchdog_s = first.watchdog_s;
+  layout.mit = first.mit;
+  layout.cia402 = first.cia402;
+  layout.moteus = first.moteus;
   layout.torque_limit_Nm.resize(entry.arm.dof);
   for (size_t i = 0; i < entry.joints.size(); ++i) {
     layout.torque_limit_Nm[static_cast<Eigen::Index>(i)] = entry.joints[i].torque_limit_Nm;
@@ -38,6 +44,11 @@ ArmLayout ArmLayoutOf(const ArmEntry& entry) {
 
 JointDriveConfig ArmLayout::JointPrototype(size_t i) const {
   JointDriveConfig prototype;
+  prototype.profile = drive;
+  prototype.watchdog_s = watchdog_s;
+  prototype.mit = mit;
+  prototype.cia402 = cia402;
+  prototype.moteus = moteus;
   prototype.node_id = static_cast<int>(i) + 1;
   const Eigen::Index known = torque_limit_Nm.size();
   const auto own = known == 1 ? 0 : static_cast<Eigen::Index>(i);

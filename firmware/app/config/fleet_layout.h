@@ -41,8 +41,13 @@ struct GraphLayout {
 struct ArmLayout {
   int id = 0;
   std::string bus;
+  CanBusConfig can;
   DriveProfile drive = DriveProfile::kODriveCanSimple;
   JointVector torque_limit_Nm;
+  double watchdog_s = JointDriveConfig().watchdog_s;
+  MitConfig mit;
+  Cia402Config cia402;
+  MoteusConfig moteus;
   PlanarArmConfig arm;
   std::vector<LinkConfig> link;
   std::vector<JointDriveConfig> joint;
@@ -52,16 +57,23 @@ struct ArmLayout {
   void Visit(Visitor& parameter) {
     parameter({"id", "", 1, kMaxArms, "number of the arm, unique in the fleet"}, id);
     parameter({"bus", "", 0, 0, "arm's own CAN bus: udp:GROUP:PORT or socketcan:INTERFACE"}, bus);
-    parameter({"drive", "", 0, 0, "profile that the arm's drives speak"}, drive);
+    parameter.Table("can", can);
+    parameter({"drive", "", 0, 0, "profile that the arm's drives speak, unless a joint says otherwise"},
+              drive);
     parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque of a joint: one value, or one a joint"},
               torque_limit_Nm);
+    parameter({"watchdog_s", "s", 0.005, 10, "silence after which a drive must stop by itself"}, watchdog_s);
+    parameter.Table("mit", mit);
+    parameter.Table("cia402", cia402);
+    parameter.Table("moteus", moteus);
     arm.Visit(parameter);
     parameter.List({"link", "a link, 1 to 7 from the base outwards"}, link, [](size_t) {
       return LinkConfig{0.0, 0.0, 0.0, 0.0};
     });  // none has a default
     parameter.List(
         {"joint",
-         "wiring of a joint, one a link; what is left out: node ids 1, 2, .. and the arm's torque limit"},
+         "wiring of a joint, one a link; what is left out: node ids 1, 2, .., and what the arm says "
+         "for all"},
         joint, [this](size_t i) { return JointPrototype(i); });
     parameter.Table("control", control);
   }
