@@ -122,7 +122,8 @@ double MoteusEmulator::Command::*MoteusEmulator::FieldOf(Register reg) {
 uint32_t MoteusEmulator::Write(Register reg, double value) {
   if (reg == Register::kMode) {
     command_ = {};
-    command_.mode = static_cast<Mode>(static_cast<int8_t>(std::clamp(value, -128.0, 127.0)));
+    const double mode = std::isnan(value) ? 0.0 : std::clamp(value, -128.0, 127.0);  // as ARM converts
+    command_.mode = static_cast<Mode>(static_cast<int8_t>(mode));
     command_valid_ = true;
     return 0;
   }

@@ -10,6 +10,8 @@ using odrive::AxisState;
 using odrive::Command;
 using odrive::ControlMode;
 
+/// What the emulated drive says that it is: a Pro with the firmware of the manual that it is made after.
+constexpr odrive::Version kVersion = {.protocol = 2, .hardware = {4, 4, 58}, .firmware = {0, 6, 10}};
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -34,6 +36,8 @@ void ODriveEmulator::OnFrame(double t_s, const CanFrame& frame, const JointTruth
     SendEstimates(truth, out);
   } else if (command == Command::kHeartbeat) {
     SendHeartbeat(out);
+  } else if (command == Command::kGetVersion && firmware_ == odrive::Firmware::kV06) {
+    out->Push(odrive::EncodeVersion(joint_.node_id, kVersion));
   }
 }
 
@@ -66,6 +70,7 @@ void ODriveEmulator::OnDataFrame(double t_s, Command command, const CanFrame& fr
     case Command::kSetInputTorque:
       if (!odrive::DecodeSetInputTorque(frame, joint_.node_id, &input_torque_Nm_)) return;
       break;
+    case Command::kGetVersion:
     case Command::kHeartbeat:
     case Command::kEncoderEstimates:
       return;

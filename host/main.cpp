@@ -6,6 +6,7 @@
 
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
+#include "host/can/can_command.h"
 #include "host/check.h"
 #include "host/report_command.h"
 #include "host/run/run_command.h"
@@ -68,7 +69,6 @@ int main(int argc, char** argv) {
   run.program_directory = ProgramDirectory();
   CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes in real time");
   run.scenario.AddTo(run_command);
-  run.arguments.assign(argv + 1, argv + argc);
   run_command
       ->add_option(
           "--bus", run.bus,
@@ -102,6 +102,8 @@ int main(int argc, char** argv) {
   spy_command->add_option("--lcm-url", spy.lcm_url, "watch this LCM url")->excludes(spy_file);
   spy_command->add_flag("--jar-only", spy.jar_only, "make the jar of message types and print its path");
   spy_command->callback([&] { code = RunSpyCommand(spy); });
+
+  AddCanCommand(&app, &code);
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
     WriteParameterReference(std::cout);

@@ -53,7 +53,8 @@ class JointDrive {
   /// or was stopped: a drive does not re-arm by itself.
   virtual void BringUp(int64_t now_ns, FrameList* out) = 0;
 
-  /// Asks for a fresh sample of position and velocity. Once a control period, before the torque.
+  /// Asks for a fresh sample of position and velocity. Once a control period, before the torque;
+  /// not during the bring-up, in which a drive may have to be left alone.
   virtual void RequestSample(int64_t now_ns, FrameList* out) = 0;
 
   /// Joint-side torque; clipped to the configured limit. A non-finite value is encoded as zero. Its frame is

@@ -53,7 +53,8 @@ CanSignal FromZero(CanSignal field, double max) {
 
 uint32_t TruncatedAndWrapped(const CanSignal& field, double value, double max) {
   const double code = (value + max) * LastCode(field) / (2.0 * max);
-  return static_cast<uint32_t>(static_cast<int64_t>(code)) & LastCode(field);
+  const double wrapped = std::fmod(std::trunc(code), LastCode(field) + 1.0);  // no integer holds every code
+  return static_cast<uint32_t>(static_cast<int32_t>(wrapped)) & LastCode(field);
 }
 
 bool IsClassicData(const CanFrame& frame) {

@@ -62,7 +62,8 @@ void ODriveCanSimple::RequestSample(int64_t /*now_ns*/, FrameList* out) {
 
 void ODriveCanSimple::CommandTorque(double tau_Nm, FrameList* out) {
   const double limit = config_.torque_limit_Nm;
-  const double allowed_Nm = std::isfinite(tau_Nm) ? std::clamp(tau_Nm, -limit, limit) : 0.0;
+  const bool follows = phase_ == Phase::kTorque && std::isfinite(tau_Nm);
+  const double allowed_Nm = follows ? std::clamp(tau_Nm, -limit, limit) : 0.0;
   const double motor_Nm = config_.direction * allowed_Nm / config_.gear_ratio;
   out->Push(odrive::EncodeSetInputTorque(config_.node_id, FloatTowardZero(motor_Nm)));
 }

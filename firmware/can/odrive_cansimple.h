@@ -17,6 +17,7 @@ class ODriveCanSimple final : public JointDrive {
 
   void BringUp(int64_t now_ns, FrameList* out) override;
   void RequestSample(int64_t now_ns, FrameList* out) override;
+  /// Out of torque mode: zero, for the drive may be armed to prove its watchdog.
   void CommandTorque(double tau_Nm, FrameList* out) override;
   void QuickStop(FrameList* out) override;
   void Disable(FrameList* out) override;

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace armada::odrive {
 namespace {
@@ -39,6 +40,17 @@ constexpr PartFlag kPartFlags[] = {
     {{"motor_error", 40, 1}, 0x40}, {{"encoder_error", 48, 1}, 0x100}, {{"controller_error", 56, 1}, 0x200}};
 constexpr CanSignal kTrajectoryDone{"trajectory_done", 63, 1};
 
+constexpr std::array<CanSignal, 8> kVersion = {{{"protocol_version", 0, 8},
+                                                {"hardware_product_line", 8, 8},
+                                                {"hardware_version", 16, 8},
+                                                {"hardware_variant", 24, 8},
+                                                {"firmware_major", 32, 8},
+                                                {"firmware_minor", 40, 8},
+                                                {"firmware_revision", 48, 8},
+                                                {"firmware_unreleased", 56, 8}}};
+constexpr size_t kHardwareVersion = 1;  // first of three, likewise:
+constexpr size_t kFirmwareVersion = 4;
+
 float GetFloat(const CanFrame& frame, const CanSignal& signal) {
   return std::bit_cast<float>(GetRaw(frame, signal));
 }
@@ -58,6 +70,23 @@ bool IsForNode(const CanFrame& frame, int node, Command* command) {
   if (frame.id >> kCommandBits != static_cast<uint32_t>(node)) return false;
   *command = static_cast<Command>(frame.id & kCommandMask);
   return true;
+}
+
+CanFrame EncodeVersionRequest(int node) {
+  CanFrame frame = Frame(node, Command::kGetVersion, 8);
+  frame.remote = true;
+  return frame;
+}
+
+CanFrame EncodeVersion(int node, const Version& version) {
+  CanFrame frame = Frame(node, Command::kGetVersion, 8);
+  PutRaw(kVersion[0], version.protocol, &frame);
+  for (size_t i = 0; i < 3; ++i) {
+    PutRaw(kVersion[kHardwareVersion + i], version.hardware[i], &frame);
+    PutRaw(kVersion[kFirmwareVersion + i], version.firmware[i], &frame);
+  }
+  PutRaw(kVersion.back(), version.unreleased ? 1 : 0, &frame);
+  return frame;
 }
 
 CanFrame EncodeHeartbeat(int node, Firmware firmware, const Heartbeat& heartbeat) {
@@ -114,6 +143,17 @@ CanFrame EncodeSetInputTorque(int node, float torque_Nm) {
 /// 0.6 reads one byte, "identify" (flash the light); 0.5 reads none and takes it.
 CanFrame EncodeClearErrors(int node) {
   return Frame(node, Command::kClearErrors, 1);
+}
+
+bool DecodeVersion(const CanFrame& frame, int node, Version* version) {
+  if (!IsData(frame, node, Command::kGetVersion, 8)) return false;
+  version->protocol = static_cast<uint8_t>(GetRaw(frame, kVersion[0]));
+  for (size_t i = 0; i < 3; ++i) {
+    version->hardware[i] = static_cast<uint8_t>(GetRaw(frame, kVersion[kHardwareVersion + i]));
+    version->firmware[i] = static_cast<uint8_t>(GetRaw(frame, kVersion[kFirmwareVersion + i]));
+  }
+  version->unreleased = GetRaw(frame, kVersion.back()) != 0;
+  return true;
 }
 
 bool DecodeHeartbeat(const CanFrame& frame, int node, Firmware firmware, Heartbeat* heartbeat) {
@@ -179,7 +219,7 @@ std::vector<CanMessage> Messages(const JointDriveConfig& joint) {
                       .signals = std::move(signals),
                       .meaning = meaning};
   };
-  return {
+  std::vector<CanMessage> messages = {
       message("Heartbeat", Command::kHeartbeat, true, 8, std::move(heartbeat), "every 100 ms"),
       message("Estop", Command::kEstop, false, 0, {}, "disarms and latches an error"),
       message("SetAxisState", Command::kSetAxisState, false, 4, {kRequestedState}, "1 idle, 8 closed loop"),
@@ -191,6 +231,11 @@ std::vector<CanMessage> Messages(const JointDriveConfig& joint) {
       message("ClearErrors", Command::kClearErrors, false, 1, {kIdentify},
               "as when the drive was switched on"),
   };
+  if (FirmwareOf(joint.profile) == Firmware::kV06) {
+    messages.push_back(message("Version", Command::kGetVersion, true, 8, {kVersion.begin(), kVersion.end()},
+                               "on request; for tools"));
+  }
+  return messages;
 }
 
 }  // namespace armada::odrive

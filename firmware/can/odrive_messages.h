@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace armada::odrive {
 /// node's message of that name, is as long as its fields, and every number in it is finite.
 
 enum class Command : uint8_t {
+  kGetVersion = 0x00,  ///< 0.6 only
   kHeartbeat = 0x01,
   kEstop = 0x02,
   kSetAxisState = 0x07,
@@ -57,6 +59,13 @@ struct ControllerMode {
   InputMode input = InputMode::kPassthrough;
 };
 
+struct Version {
+  uint8_t protocol = 0;
+  std::array<uint8_t, 3> hardware{};  ///< product line, version, variant
+  std::array<uint8_t, 3> firmware{};  ///< major, minor, revision
+  bool unreleased = false;
+};
+
 /// Axis error bits used here.
 constexpr uint32_t WatchdogError(Firmware firmware) {
   return firmware == Firmware::kV05 ? 0x800 : 0x100'0000;
@@ -69,6 +78,8 @@ constexpr uint32_t EstopError(Firmware firmware) {
 /// bits.
 bool IsForNode(const CanFrame& frame, int node, Command* command);
 
+CanFrame EncodeVersionRequest(int node);  ///< remote frame: asks for the version
+CanFrame EncodeVersion(int node, const Version& version);
 CanFrame EncodeHeartbeat(int node, Firmware firmware, const Heartbeat& heartbeat);
 CanFrame EncodeEstop(int node);
 CanFrame EncodeSetAxisState(int node, AxisState state);
@@ -78,6 +89,7 @@ CanFrame EncodeSetControllerMode(int node, const ControllerMode& mode);
 CanFrame EncodeSetInputTorque(int node, float torque_Nm);
 CanFrame EncodeClearErrors(int node);
 
+bool DecodeVersion(const CanFrame& frame, int node, Version* version);
 bool DecodeHeartbeat(const CanFrame& frame, int node, Firmware firmware, Heartbeat* heartbeat);
 bool DecodeSetAxisState(const CanFrame& frame, int node, AxisState* state);
 bool DecodeEncoderEstimates(const CanFrame& frame, int node, EncoderEstimates* estimates);

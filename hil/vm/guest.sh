@@ -1,5 +1,5 @@
-# What the guests of hil/vm have in common; sourced by run and run_virtual.
-# shellcheck shell=bash
+# What the guests of hil/vm have in common; sourced by run and run_virtual, which set $here and $guest_program.
+# shellcheck shell=bash disable=SC2154
 
 fail() {
   printf '%s: %s\n' "$guest_program" "$1" >&2
@@ -60,10 +60,12 @@ pack() {
 }
 
 # boot KERNEL_ARGUMENTS QEMU_OPTION...: runs the guest to its end and leaves its command's exit status in $status. Its
-# serial ports are the kernel's console, the command's output (our standard output) and the exit status. Emulated,
+# serial ports are the kernel's console, the command's output (to $output_port) and the exit status. Emulated,
 # never with KVM, which a rented machine may offer and not bear; time is counted in instructions of 1 ns.
 # Should this program be killed, the kernel ends qemu.
 sleep=''  # ,sleep=off: a guest that waits for its next timer is there at once
+output_port=stdio
+beside=(:)  # called while the guest runs
 # Hardening costs instructions, and there is nothing to protect.
 lean='mitigations=off init_on_alloc=0 hardened_usercopy=off apparmor=0 audit=0 nowatchdog'
 boot() {
@@ -74,9 +76,10 @@ boot() {
     -machine pc -cpu max,-rdrand,-rdseed -accel tcg -smp 1 -m 1024 -icount "shift=0$sleep" \
     -kernel "$kernel/vmlinuz" -initrd "$work/initramfs" \
     -append "console=ttyS0 quiet loglevel=4 panic=-1 $lean $arguments" \
-    -serial "file:$work/console" -chardev stdio,id=output -serial chardev:output -serial "file:$work/status" \
+    -serial "file:$work/console" -serial "$output_port" -serial "file:$work/status" \
     "$@" </dev/null &
   qemu=$!
+  "${beside[@]}"
   wait "$qemu" || true
   qemu=''
   status=$(tr -d '\r\n' <"$work/status") || true

@@ -8,12 +8,12 @@ import json
 import pathlib
 import sys
 
-# Bounds in virtual time, microseconds: nine programs share one processor of 1000 MIPS, and all boards tick at the same
-# instant, so that the last one waits for the work of the others. Measured: see MEASURED in docs/hil.md.
+# Bounds in virtual time, microseconds. Nine programs share one processor of 1000 MIPS and all boards tick at the same
+# instant: the last one waits for the work of the six others, in all about 4.5 ms. Measured figures: docs/hil.md.
 WAKEUP_P999_US = 5000
-WAKEUP_MAX_US = 9000  # the first ticks, with cold caches; 10000 would be a missed tick
-TORQUE_P999_US = 2500
-TORQUE_MAX_US = 5000
+WAKEUP_MAX_US = 8500  # the first tick, with cold caches; 10000 would be a missed one
+TORQUE_P99_US = 1500
+TORQUE_MAX_US = 6000  # ticks in which a lock of the network makes the boards take turns: all end with the last
 # Counters of metrics.json that must stay 0.
 LOSSES = ("can_dropped", "can_malformed", "can_errors", "lcm_rejected", "lcm_malformed", "lcm_overflowed")
 
@@ -47,10 +47,10 @@ def judge(directory):
         wakeup, torque = timing["wakeup_lateness_us"], timing["sample_to_torque_us"]
         bound(wakeup["p99.9"], WAKEUP_P999_US, "wake-up lateness p99.9 [us]")
         bound(wakeup["max"], WAKEUP_MAX_US, "wake-up lateness max [us]")
-        bound(torque["p99.9"], TORQUE_P999_US, "sample to torque p99.9 [us]")
+        bound(torque["p99"], TORQUE_P99_US, "sample to torque p99 [us]")
         bound(torque["max"], TORQUE_MAX_US, "sample to torque max [us]")
         wakeup_us.append((wakeup["p99.9"], wakeup["max"]))
-        torque_us.append((torque["p99.9"], torque["max"]))
+        torque_us.append((torque["p99"], torque["p99.9"], torque["max"]))
 
         # Our log has all that candump saw; what came after its end are the boards' farewells.
         ours = list(frames(run / f"can_{arm['id']}.log", f"can{arm['id']}"))
@@ -66,7 +66,7 @@ def judge(directory):
         print(complaint, file=sys.stderr)
     wakeup, torque = map(max, zip(*wakeup_us)), map(max, zip(*torque_us))
     print("two runs identical, {} frames; no missed tick, wake-up p99.9/max {:.0f}/{:.0f} us, sample to torque "
-          "{:.0f}/{:.0f} us, fleet RMS {:.3f} mm".format(count, *wakeup, *torque, metrics["fleet_rms_mm"]))
+          "p99/p99.9/max {:.0f}/{:.0f}/{:.0f} us, fleet RMS {:.3f} mm".format(count, *wakeup, *torque, metrics["fleet_rms_mm"]))
     return 1 if complaints else 0
 
 

@@ -16,8 +16,10 @@ std::string CheckHilBuses(const RunOptions& options) {
     if (sign == std::string::npos || !ParseBusName(text.substr(sign + 1), &error))
       return "--hil-bus " + text + ": must be <arm>=<bus>, such as 1=socketcan:can1";
   }
-  if (!options.hil_buses.empty() && options.namespaces)
-    return "--hil-bus does not go with --namespaces: there both ends of a bus have the same name";
+  if (!options.hil_buses.empty() && (options.namespaces || options.bus != "socketcan")) {
+    return "--hil-bus is for --bus socketcan without --namespaces: otherwise both ends of a bus have one "
+           "name";
+  }
   return {};
 }
 
@@ -33,9 +35,10 @@ std::string ChooseBuses(const RunOptions& options, FleetConfig* fleet) {
   if (std::string wrong = CheckHilBuses(options); !wrong.empty()) return wrong;
   for (ArmEntry& arm : fleet->arms) {
     const bool socketcan = !SocketCanInterface(arm.bus).empty();
-    if (options.bus == "udp" && socketcan)
+    if (options.bus == "udp" && socketcan) {
       return "arm " + std::to_string(arm.id) + " has bus " + arm.bus +
              ": run it with --bus socketcan or --bus vm";
+    }
     if (options.bus != "udp" && !socketcan) arm.bus = "socketcan:vcan" + std::to_string(arm.id);
   }
   return {};

@@ -39,8 +39,14 @@ int Fail(const std::string& message) {
   return kExitFailed;
 }
 
-// What an earlier run left must not pass for a result of this one.
-void RemoveEarlierRun(const fs::path& directory) {
+// An empty place for the run: what an earlier one left must not pass for a result of this one.
+bool PrepareFolder(const fs::path& directory, std::string* error) {
+  std::error_code code;
+  fs::create_directories(directory, code);
+  if (code) {
+    *error = "cannot create " + directory.string() + ": " + code.message();
+    return false;
+  }
   std::error_code ignored;
   for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "leader.csv", "lcm.log",
                            "report", "without_subtask"}) {
@@ -51,6 +57,7 @@ void RemoveEarlierRun(const fs::path& directory) {
     if (name.starts_with("arm_") || name.starts_with("can_") || name.starts_with("initial_"))
       fs::remove(entry.path(), ignored);
   }
+  return true;
 }
 
 /// One run of a scenario as processes.
@@ -90,14 +97,7 @@ class Run {
 };
 
 bool Run::WriteInputs(std::string* error) {
-  std::error_code code;
-  fs::create_directories(out_, code);
-  if (code) {
-    *error = "cannot create " + out_.string() + ": " + code.message();
-    return false;
-  }
-  RemoveEarlierRun(out_);
-  if (!WriteEffective(scenario_, out_.string(), error)) return false;
+  if (!PrepareFolder(out_, error) || !WriteEffective(scenario_, out_.string(), error)) return false;
   std::optional<LeaderPath> leader;
   if (scenario_.leader.kind != LeaderKind::kNone) leader.emplace(scenario_.leader);
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
@@ -293,11 +293,13 @@ int RunRunCommand(const RunOptions& options) {
     std::cerr << "armada run: " << wrong << '\n';
     return kExitUsage;
   }
-  if (options.bus == "vm") return RunInVm(options);
+  std::string error;
+  if (options.bus == "vm") {
+    return PrepareFolder(options.out, &error) ? RunInVm(options, *scenario) : Fail(error);
+  }
   std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
             << " s, seed " << options.seed << ", into " << options.out << std::endl;
   Run run(options, std::move(*scenario));
-  std::string error;
   RunMetrics metrics;
   nlohmann::ordered_json json;
   if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {

@@ -16,8 +16,7 @@ struct RunOptions {
   uint64_t seed = 1;
   std::string out = "out/run";
   std::string json;
-  std::string program_directory;       ///< where armada-arm, armada-hil and armada-leader are
-  std::vector<std::string> arguments;  ///< of the whole command line, for --bus vm
+  std::string program_directory;  ///< where armada-arm, armada-hil and armada-leader are
 };
 
 /// `armada run`: the scenario as processes in real time. Starts, watches and stops everything; exit code.

@@ -40,8 +40,9 @@ bool VirtualCan::Provide(const std::vector<std::string>& interfaces, std::string
   for (const std::string& name : interfaces) {
     std::string complaint;
     if (Exists(name) || Make(name, &complaint)) continue;
-    *error = "cannot make the CAN interface " + name + ": " + complaint +
-             "\nRun as root, or make what is missing once:" + Remedy(interfaces);
+    *error = "cannot make the CAN interface ";
+    error->append(name).append(": ").append(complaint);
+    error->append("\nRun as root, or make what is missing once:").append(Remedy(interfaces));
     return false;
   }
   return true;

@@ -269,12 +269,28 @@ TEST_F(ODrive, BadFeedbackIsAsIfItHadNotCome) {
 }
 
 TEST_F(ODrive, TorqueIsConvertedToTheMotor) {
+  BringUp();
   EXPECT_EQ(MotorTorque(45.0), -5.0);
   EXPECT_EQ(MotorTorque(-90.0), 10.0);
   EXPECT_EQ(MotorTorque(0.0), 0.0);
 }
 
+TEST_F(ODrive, OutOfTorqueModeTorqueIsZeroWhateverIsAsked) {
+  EXPECT_EQ(MotorTorque(45.0), 0.0);
+  Hear(AxisState::kIdle);
+  ASSERT_EQ(Tick(), 4u);
+  Hear(AxisState::kClosedLoop);  // armed, to prove its watchdog
+  EXPECT_EQ(MotorTorque(45.0), 0.0);
+  Hear(AxisState::kIdle, kExpired);
+  ASSERT_EQ(Tick(), 4u);
+  Hear(AxisState::kClosedLoop);
+  EXPECT_NE(MotorTorque(45.0), 0.0);
+  Hear(AxisState::kIdle);
+  EXPECT_EQ(MotorTorque(45.0), 0.0);
+}
+
 TEST_F(ODrive, TorqueThatIsNotFiniteIsEncodedAsZero) {
+  BringUp();
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(MotorTorque(bad), 0.0);
@@ -289,6 +305,11 @@ TEST(ODriveTorque, NeverPassesTheLimitNotEvenByRounding) {
     JointDriveConfig config = Config(gear(random), random() & 1 ? 1.0 : -1.0);
     config.torque_limit_Nm = limit(random);
     ODriveCanSimple drive(config);
+    drive.OnFrame(odrive::EncodeHeartbeat(kNode, Firmware::kV06, {kExpired, AxisState::kIdle, 0}));
+    FrameList arming;
+    drive.BringUp(0, &arming);
+    drive.OnFrame(odrive::EncodeHeartbeat(kNode, Firmware::kV06, {0, AxisState::kClosedLoop, 0}));
+    ASSERT_EQ(drive.state(), DriveState::kTorque);
     const double sign = random() & 1 ? 1.0 : -1.0;
     for (const double factor : {1.0, 1.5, 1e300}) {
       FrameList sent;

@@ -73,11 +73,13 @@ silent_about() { ! says "$1"; }
 given '' 0 0
 when dance
 check 'an unknown command is a usage error' test "$code" = 2
-check 'and its message names what there is' says "unknown command 'dance'; there are: build, demo, test, help"
+check 'and its message names what there is' says "unknown command 'dance'; there are: build, demo, fuzz, hil, test, help"
 when test -R
 check '-R without a pattern is a usage error' test "$code" = 2
 when build now
 check 'build takes no arguments' test "$code" = 2
+when hil now
+check 'hil takes no arguments' test "$code" = 2
 when help
 check 'help succeeds' test "$code" = 0
 check 'none of them installs or builds anything' test ! -s apt_calls -a ! -e cmake_calls
@@ -121,6 +123,26 @@ check 'the demo runs the paper for 20 s with further options' \
   says 'armada run hil/scenarios/paper.toml --seconds 20 --out out/demo --seed 7'
 check 'and reports' says 'armada report out/demo'
 check 'and succeeds' test "$code" = 0
+
+# Stand-ins for what hil/vm does: the kernels, and two runs with a line of figures.
+mkdir -p project/hil/vm
+printf '#!/bin/bash\necho "image into $ARMADA_VM_CACHE" >>%q\n' "$box/vm_calls" >project/hil/vm/image
+printf '#!/bin/bash\necho "hil $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' "$box/vm_calls" \
+  >project/hil/vm/hil
+chmod +x project/hil/vm/*
+export ARMADA_VM_CACHE=$box/kernels
+given '' 0 0
+when hil
+check 'hil succeeds' test "$code" = 0
+check 'and gets the kernels, then runs' test "$(cat vm_calls)" = \
+  "$(printf '%s\n' "image into $box/kernels" "hil build/release/bin out/hil $box/kernels")"
+check 'and prints the figures' says 'figures'
+given '' 0 1
+when hil
+check 'a hil that fails is a failure' test "$code" = 1
+given 'qemu-system-x86' 0 0
+when hil
+check 'hil installs the virtual machine' says "qemu-system-x86      runs Debian's kernels"
 
 given '' 0 1
 when demo

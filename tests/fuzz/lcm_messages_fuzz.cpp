@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/link/messages.h"
+#include "tests/fuzz/require.h"
+
+namespace armada {
+namespace {
+
+template <class Message>
+void TestMessage(std::span<const uint8_t> payload) {
+  Message message;
+  if (!Decode(payload, &message)) return;
+  Require(message.stamp_ns >= 0 && message.stamp_ns <= kMaxStampNs, "a stamp in its range");
+  Require(message.sequence >= 1, "messages count from 1");
+  for (const double value : message.x_m) Require(std::isfinite(value), "positions are finite");
+  MessageBuffer buffer;
+  const std::span<const uint8_t> again = Encode(message, &buffer);
+  Require(std::equal(payload.begin(), payload.end(), again.begin(), again.end()),
+          "encoding what was decoded gives the same bytes");
+}
+
+}  // namespace
+}  // namespace armada
+
+/// Payloads of LCM messages: every type is tried on them all, as the fingerprint tells them apart.
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace armada;
+  TestMessage<leader_t>({data, size});
+  TestMessage<estimate_t>({data, size});
+  TestMessage<telemetry_t>({data, size});
+  return 0;
+}

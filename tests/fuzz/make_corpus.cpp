@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/can/damiao_messages.h"
+#include "firmware/can/moteus_messages.h"
+#include "firmware/can/udp_frame_codec.h"
+#include "firmware/link/lcm_packet.h"
+#include "firmware/link/messages.h"
+#include "tests/fuzz/drive_world.h"
+
+namespace armada {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr uint8_t kOptions[] = {0x00, 0xFF, 0x2B};
+
+constexpr std::pair<const char*, DriveProfile> kProfiles[] = {
+    {"odrive_cansimple", DriveProfile::kODriveCanSimple},
+    {"odrive_cansimple_v05", DriveProfile::kODriveCanSimpleV05},
+    {"mini_cheetah", DriveProfile::kMiniCheetah},
+    {"cubemars", DriveProfile::kCubeMars},
+    {"damiao", DriveProfile::kDamiao},
+    {"cia402", DriveProfile::kCia402},
+    {"moteus", DriveProfile::kMoteus},
+};
+
+/// Writes seeds into one folder a fuzzer, as far as they can be written.
+class Corpus {
+ public:
+  Corpus(const std::filesystem::path& root, const std::string& fuzzer) : folder_(root / fuzzer) {
+    std::filesystem::create_directories(folder_);
+  }
+
+  void Add(std::span<const uint8_t> seed) {
+    std::ofstream file(folder_ / ("seed_" + std::to_string(count_++)), std::ios::binary);
+    file.exceptions(std::ios::failbit | std::ios::badbit);
+    file.write(reinterpret_cast<const char*>(seed.data()), static_cast<std::streamsize>(seed.size()));
+  }
+
+ private:
+  std::filesystem::path folder_;
+  int count_ = 0;
+};
+
+uint8_t Code(DriveAction action) {
+  return static_cast<uint8_t>(action);
+}
+
+/// The frame as an action; nothing when it is none of the joint's messages.
+void AppendMessage(const std::vector<CanMessage>& messages, const CanFrame& frame, Bytes* seed) {
+  for (size_t i = 0; i < messages.size(); ++i) {
+    if (messages[i].id != frame.id || messages[i].extended != frame.extended) continue;
+    seed->insert(seed->end(), {Code(DriveAction::kMessage), static_cast<uint8_t>(i), frame.length});
+    seed->insert(seed->end(), frame.data.begin(), frame.data.begin() + frame.length);
+    return;
+  }
+}
+
+/// What master and drive do in a bring-up, in torque mode, and on the ways out of it; and the frames of such
+/// a conversation for a master that has no drive to talk to.
+void AddDriveSeeds(DriveProfile profile, uint8_t options, Corpus* corpus) {
+  constexpr uint8_t kTorques[] = {64, 80, 48, 127, 0};
+  Bytes in_torque = {options, Code(DriveAction::kRecover)};
+  for (const uint8_t torque : kTorques) {
+    in_torque.insert(in_torque.end(), {Code(DriveAction::kTorque), torque});
+  }
+  corpus->Add(in_torque);
+  using enum DriveAction;
+  for (const DriveAction way_out : {kQuickStop, kDisable, kPowerCycle}) {
+    Bytes seed = in_torque;
+    seed.insert(seed.end(), {Code(way_out), Code(kBringUp), 8, Code(kTorque), 80, Code(kPowerCycle)});
+    corpus->Add(seed);
+  }
+  Bytes silence = in_torque;
+  silence.insert(silence.end(), {Code(kTime), 255, Code(kTorque), 80, Code(kBringUp), 15, Code(kRecover)});
+  corpus->Add(silence);
+
+  DriveWorld world(SetupOf(profile, options));
+  world.Recover();
+  for (int tick = 0; tick < 5; ++tick) world.TorqueTick(1.0);
+  Bytes heard = {options};
+  for (const CanFrame& frame : world.from_drive()) {
+    AppendMessage(world.messages(), frame, &heard);
+    heard.insert(heard.end(), {Code(kBringUp), 0});
+  }
+  corpus->Add(heard);
+}
+
+/// What was found once: a range that makes every code overflow, a mode that is no number.
+void AddFindings(DriveProfile profile, Corpus* corpus) {
+  const JointDriveConfig joint = SetupOf(profile, 0).joint;
+  Bytes seed = {0};
+  if (profile == DriveProfile::kDamiao) {
+    const damiao::RegisterAccess smallest_range = {damiao::Access::kWrite, damiao::Register::kPositionMax, 1};
+    AppendMessage(MessagesOf(joint), damiao::EncodeRequest(joint, smallest_range), &seed);
+  } else if (profile == DriveProfile::kMoteus) {
+    CanFrame frame = moteus::EncodeStop(joint);
+    constexpr uint8_t kModeAsNaN[] = {0x0D, 0x00, 0x00, 0x00, 0xC0, 0x7F, moteus::kNop, moteus::kNop};
+    frame.length = sizeof kModeAsNaN;
+    std::copy(std::begin(kModeAsNaN), std::end(kModeAsNaN), frame.data.begin());
+    AppendMessage(MessagesOf(joint), frame, &seed);
+  } else {
+    return;
+  }
+  seed.insert(seed.end(), {Code(DriveAction::kMove), 1, 0, 1, 0, Code(DriveAction::kBringUp), 0});
+  corpus->Add(seed);
+}
+
+void AddDatagrams(DriveProfile profile, Corpus* corpus) {
+  DriveWorld world(SetupOf(profile, 0));
+  world.Recover();
+  for (const CanFrame& frame : world.from_drive()) {
+    UdpFrameBuffer buffer;
+    corpus->Add(std::span(buffer).first(EncodeUdpFrame(frame, 1.5e9, &buffer)));
+  }
+}
+
+template <class Message>
+Message Zero() {
+  Message message{};
+  message.stamp_ns = 1;
+  message.sequence = 1;
+  message.task_dim = 2;
+  return message;
+}
+
+void AddLcmSeeds(const std::filesystem::path& root) {
+  Corpus packets(root, "lcm_packet");
+  Corpus messages(root, "lcm_messages");
+  const auto add = [&](const char* channel, const auto& message) {
+    MessageBuffer payload;
+    const std::span<const uint8_t> encoded = Encode(message, &payload);
+    messages.Add(encoded);
+    std::array<uint8_t, 2048> datagram;
+    packets.Add(std::span(datagram).first(WriteLcmPacket(7, {channel, encoded}, datagram)));
+  };
+  add("LEADER", Zero<leader_t>());
+  auto estimate = Zero<estimate_t>();
+  estimate.arm_id = 1;
+  add("EST_1", estimate);
+  auto telemetry = Zero<telemetry_t>();
+  telemetry.arm_id = 1;
+  telemetry.dof = 3;
+  add("TEL_1", telemetry);
+}
+
+}  // namespace
+}  // namespace armada
+
+int main(int argc, char** argv) {
+  using namespace armada;
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: fuzz_corpus FOLDER, for one folder of seeds a fuzzer\n");
+    return 2;
+  }
+  const std::filesystem::path root = argv[1];
+  Corpus datagrams(root, "udp_frame");
+  for (const auto& [name, profile] : kProfiles) {
+    Corpus corpus(root, name);
+    for (const uint8_t options : kOptions) AddDriveSeeds(profile, options, &corpus);
+    AddFindings(profile, &corpus);
+    AddDatagrams(profile, &datagrams);
+  }
+  AddLcmSeeds(root);
+  return 0;
+}
