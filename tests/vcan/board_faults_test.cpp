@@ -78,7 +78,7 @@ class BoardFaults : public testing::Test {
  protected:
   BoardFaults() {
     std::vector<ConfigError> errors;
-    scenario_ = *LoadScenario(ARMADA_SOURCE_DIR "/hil/scenarios/benign.toml", {}, &errors);
+    scenario_ = *LoadScenario("hil/scenarios/benign.toml", {}, &errors);
     scenario_.fleet.arms.resize(1);
     scenario_.fleet.arms[0].bus = interface_.bus();
     scenario_.fleet.topologies = {{{}, {{1, 1.0}}}};

@@ -7,7 +7,8 @@
 namespace armada {
 
 void Shell(const std::string& command) {
-  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  // busybox's shell, the guest's, would take its own tc before the real one.
+  ASSERT_EQ(std::system(("bash -c '" + command + "'").c_str()), 0) << command;
 }
 
 VcanInterface::VcanInterface(std::string name) : name_(std::move(name)) {

@@ -4,7 +4,7 @@
 
 namespace armada {
 
-/// Runs a command of iproute2 or can-utils; fails the test when it fails.
+/// Runs a command of iproute2 or can-utils, without single quotes; fails the test when it fails.
 void Shell(const std::string& command);
 
 /// A virtual CAN interface that echoes frames as a controller does, once they are sent. Needs root in a
