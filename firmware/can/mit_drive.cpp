@@ -151,7 +151,9 @@ void MitDrive::Advance() {
   const bool confirmed = replies_ >= kRepliesToConfirm && !faulty();
   switch (phase_) {
     case Phase::kDisable:
-      if (confirmed && status_ == damiao::kDisabled) Enter(is_damiao() ? Phase::kSetup : Phase::kZero);
+      if (!confirmed || status_ != damiao::kDisabled) break;
+      setup_ = DamiaoSetup(config_);  // anew after a fault, too: the drive may have been switched off and on
+      Enter(is_damiao() ? Phase::kSetup : Phase::kZero);
       break;
     case Phase::kSetup:
       if (setup_.done()) Enter(Phase::kZero);
@@ -161,7 +163,11 @@ void MitDrive::Advance() {
       }
       break;
     case Phase::kZero:
-      if (confirmed) Enter(Phase::kEnable);
+      if (faulty()) {
+        Enter(Phase::kDisable);
+      } else if (confirmed) {
+        Enter(Phase::kEnable);
+      }
       break;
     case Phase::kEnable:
       if (faulty()) {

@@ -164,6 +164,17 @@ TEST(DamiaoDrive, AFaultIsNamedAndAnOldOneCleared) {
   EXPECT_EQ(bench.master->Explain(), "over temperature of the rotor (status 0xc)");
 }
 
+TEST(DamiaoDrive, AFaultInTheMidstOfABringUpIsClearedAndAllIsSetUpAnew) {
+  for (int ticks = 1; ticks < 10; ++ticks) {
+    DriveBench bench = Bench();
+    bench.BringUpTicks(ticks);
+    Emulator(bench).Fail(0x8);
+    EXPECT_LT(bench.BringUpTicks(kMaxTicks), kMaxTicks)
+        << "after " << ticks << " ticks: " << bench.master->Explain();
+    EXPECT_EQ(bench.master->watchdog(), DriveWatchdog::kProved);
+  }
+}
+
 TEST(DamiaoDrive, AFaultThatComesBackIsGivenUp) {
   DriveBench bench = Bench();
   for (int tick = 0; tick < kMaxTicks; ++tick) {
