@@ -7,22 +7,7 @@ source=$2
 armada=$bin/armada
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# expect CODE PATTERN COMMAND...: the exit code, and a line of its output.
-expect() {
-  local code=$1 pattern=$2
-  shift 2
-  "$@" >"$work/out" 2>&1
-  local got=$?
-  [ "$got" = "$code" ] || fail "exit code $got, not $code: $*: $(cat "$work/out")"
-  grep -qE -- "$pattern" "$work/out" || fail "no line matches '$pattern': $*: $(cat "$work/out")"
-}
+. "$source/tests/host/expect.sh"
 
 scenario=$source/hil/scenarios/paper.toml
 fleet=$source/firmware/fleets/paper.toml
