@@ -1,7 +1,6 @@
 #include "host/can/can_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -50,11 +49,8 @@ class Checker {
     check.bus = entry.bus;
     check.joints = entry.joints;
     check.load = ArmBusLoad(entry, period_s, EmulatedDriveConfig{});
-    if (!std::isfinite(check.load)) {
-      Find(Severity::kError, entry.id, "emulated drives of this configuration do not come up");
-    } else if (check.load > 1.0) {
-      Find(Severity::kError, entry.id,
-           "its bus would have to carry " + Percent(check.load) + " of what it can");
+    if (const std::string error = BusLoadError(check.load); !error.empty()) {
+      Find(Severity::kError, entry.id, error);
     } else if (check.load > kHighLoad) {
       Find(Severity::kWarning, entry.id, "its bus is loaded to " + Percent(check.load));
     }

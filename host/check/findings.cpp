@@ -1,5 +1,6 @@
 #include "host/check/findings.h"
 
+#include <cmath>
 #include <cstdio>
 
 namespace armada {
@@ -42,9 +43,7 @@ void JudgePath(const PathCheck& path, double sigma_threshold_m, Collector& found
 
 std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm) {
   Collector found(arm.id);
-  if (arm.bus_load > 1.0) {
-    found.Error("its bus would have to carry " + Fixed(1e2 * arm.bus_load, 0) + " % of what it can");
-  }
+  if (const std::string error = BusLoadError(arm.bus_load); !error.empty()) found.Error(error);
   if (arm.path) JudgePath(*arm.path, entry.control.pseudoinverse.sigma_threshold_m, found);
   if (arm.disturbance && !arm.disturbance->holds()) {
     found.Warning("K_r = " + Fixed(arm.disturbance->K_r_min_Nm, 1) +
@@ -52,6 +51,11 @@ std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm) {
                   " N m: the theorem's condition is missed");
   }
   return found.findings();
+}
+
+std::string BusLoadError(double load) {
+  if (!std::isfinite(load)) return "emulated drives of this configuration do not come up";
+  return load > 1.0 ? "its bus would have to carry " + Fixed(1e2 * load, 0) + " % of what it can" : "";
 }
 
 std::string Fixed(double value, int decimals) {

@@ -11,6 +11,9 @@ namespace armada {
 /// What a person must know about one arm, one sentence each. `entry` is the arm that was checked.
 std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm);
 
+/// What is wrong with a load of ArmBusLoad; empty when nothing is.
+std::string BusLoadError(double load);
+
 /// A number with a fixed count of decimals, for people.
 std::string Fixed(double value, int decimals);
 
