@@ -26,6 +26,7 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
       period_ns_(Nanoseconds(timing.period_s)),
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
       transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
+      transmit_failures_max_(timing.transmit_failures_max),
       epoch_ns_(epoch_ns),
       estimate_channel_(EstimateChannel(node->id())),
       telemetry_channel_(TelemetryChannel(node->id())) {}
@@ -109,7 +110,6 @@ void ArmLoop::Send() {
 }
 
 void ArmLoop::ConfirmSent(int64_t deadline_ns) {
-  constexpr int kMostInARow = 2;
   const BusStatus status = bus_->Flush(deadline_ns);
   Note(status);
   if (status == BusStatus::kOk) {
@@ -117,7 +117,7 @@ void ArmLoop::ConfirmSent(int64_t deadline_ns) {
     return;
   }
   ++report_.unsent_ticks;
-  if (++unsent_in_a_row_ >= kMostInARow && bus_fault_ == FaultCause::kNone) {
+  if (++unsent_in_a_row_ >= transmit_failures_max_ && bus_fault_ == FaultCause::kNone) {
     bus_fault_ = FaultCause::kTransmitStuck;
   }
 }

@@ -60,6 +60,7 @@ class ArmLoop {
   int64_t period_ns_;
   int64_t feedback_timeout_ns_;
   int64_t transmit_timeout_ns_;
+  int transmit_failures_max_;
   int64_t epoch_ns_;
   ArmChannel estimate_channel_;
   ArmChannel telemetry_channel_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/can/feedback_step.h"
 #include "firmware/can/make_drive.h"
 
 namespace armada {
@@ -46,7 +47,19 @@ ArmControllerConfig FleetConfig::ControllerConfig(size_t index) const {
   JointVector torque_limit_Nm(entry.arm.dof);
   for (int i = 0; i < entry.arm.dof; ++i)
     torque_limit_Nm[i] = entry.joints[static_cast<size_t>(i)].torque_limit_Nm;
-  return {timing, entry.arm, estimator, entry.control, torque_limit_Nm};
+  ArmControllerConfig config{timing, entry.arm, estimator, entry.control, torque_limit_Nm};
+  // A step is an error uniform over it: its deviation is step / sqrt(12).
+  const auto with_step = [](double deviation, double step) {
+    return std::hypot(deviation, step / std::sqrt(12.0));
+  };
+  for (int i = 0; i < entry.arm.dof; ++i) {
+    const FeedbackStep step = FeedbackStepOf(entry.joints[static_cast<size_t>(i)]);
+    double& position_rad = config.control.sensor.position_deviation_rad[i];
+    double& velocity_rad_s = config.control.sensor.velocity_deviation_rad_s[i];
+    position_rad = with_step(position_rad, step.position_rad);
+    velocity_rad_s = with_step(velocity_rad_s, step.velocity_rad_s);
+  }
+  return config;
 }
 
 }  // namespace armada

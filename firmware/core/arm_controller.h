@@ -16,6 +16,7 @@ struct TimingConfig {
   double feedback_timeout_s = 0.003;
   double feedback_stale_s = 0.025;
   double transmit_timeout_s = 0.002;
+  int transmit_failures_max = 2;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -32,6 +33,9 @@ struct TimingConfig {
     parameter({"transmit_timeout_s", "s", 1e-5, 1,
                "time that a tick waits for its torques to be on the wire; those that are not are dropped"},
               transmit_timeout_s);
+    parameter({"transmit_failures_max", "ticks", 1, 100,
+               "ticks in a row whose torques did not get out at which the arm is disabled"},
+              transmit_failures_max);
   }
 };
 
@@ -46,7 +50,7 @@ struct ArmControllerConfig {
 /// What is not configuration but the start of an arm's state: zeta_i(0) and theta_hat_i(0).
 struct ArmInitialState {
   Zeta zeta;
-  ParameterVector theta_hat;
+  Learned learned;
 };
 
 /// What one tick sees. `tick_s` lies on the period's grid; the sample was taken at `sample_s`, at or after
@@ -102,6 +106,8 @@ class ArmController {
   double zeta_time_s() const { return zeta_time_s_; }
   const Estimator& estimator() const { return estimator_; }
   const ParameterVector& theta_hat() const;
+  /// What has been learned so far; without P_theta where the law has none.
+  Learned learned() const;
   JointVector d_hat_Nm() const;
   int saturated_ticks() const { return gate_.saturated_ticks(); }
   const ArmStatus& status() const { return status_; }

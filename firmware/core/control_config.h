@@ -1,7 +1,6 @@
 #pragma once
 
-#include "firmware/core/adaptation.h"
-#include "firmware/core/disturbance_observer.h"
+#include "firmware/core/augmented_filter.h"
 #include "firmware/core/gains.h"
 #include "firmware/core/governor.h"
 #include "firmware/core/implicit_control.h"
@@ -19,10 +18,14 @@ enum class LawKind {
 
 struct PaperLawConfig {
   double alpha_1_s = 3.0;
+  double difference_s = 1e-4;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"alpha_1_s", "1/s", 1e-3, 1e3, "alpha of (1.5) and (1.6) in the law as printed"}, alpha_1_s);
+    parameter({"difference_s", "s", 1e-8, 0.1,
+               "half step along dq of the central difference that gives d phi / dt in (1.6)"},
+              difference_s);
   }
 };
 
@@ -36,7 +39,8 @@ struct ControlConfig {
   GovernorConfig governor;
   AdaptationConfig adaptation;
   ProjectionConfig projection;
-  DisturbanceObserverConfig disturbance_observer;
+  DisturbanceModelConfig disturbance;
+  SensorConfig sensor;
   ImplicitControlConfig implicit_control;
   SubtaskConfig subtask;
 
@@ -50,10 +54,23 @@ struct ControlConfig {
     parameter.Table("governor", governor);
     parameter.Table("adaptation", adaptation);
     parameter.Table("projection", projection);
-    parameter.Table("disturbance_observer", disturbance_observer);
+    parameter.Table("disturbance", disturbance);
+    parameter.Table("sensor", sensor);
     parameter.Table("implicit_control", implicit_control);
     parameter.Table("subtask", subtask);
   }
+
+  /// Single values spread over the joints and axes of an arm.
+  void Expand(int dof, int task_dim) {
+    gains.Expand(dof, task_dim);
+    sensor.Expand(dof);
+  }
+};
+
+/// What a run leaves of an arm's dynamics: the next one may start from it.
+struct Learned {
+  ParameterVector theta_hat;
+  ParameterMatrix P_theta = {};  ///< its covariance; empty: AdaptationConfig::initial_deviation
 };
 
 /// What a local law sees in one tick. q, dq and zeta are of the same instant, the sample's.

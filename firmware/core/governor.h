@@ -5,7 +5,7 @@
 namespace armada {
 
 struct GovernorConfig {
-  double acceleration_rad_s2 = 30.0;
+  double acceleration_rad_s2 = 100.0;
   double speed_rad_s = 15.0;
 
   template <class Visitor>

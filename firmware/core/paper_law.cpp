@@ -31,7 +31,7 @@ JointVector PaperLaw::Torque(const LawInput& in) {
       return SubtaskVelocity(config_.subtask, arm_, q_at, posture, arm_.Jacobian(posture));
     };
     const JointVector phi = phi_at(q);
-    const double step_s = 1e-4;  // of the central difference of phi along dq
+    const double step_s = config_.paper.difference_s;
     const JointVector dphi = (phi_at(q + step_s * dq) - phi_at(q - step_s * dq)) / (2.0 * step_s);
     dq_r += phi - J_sharp * (J * phi);
     ddq_r += dphi - J_sharp * (J * dphi) - dJ_sharp * (J * phi) - J_sharp * (dJ * phi);

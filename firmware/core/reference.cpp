@@ -5,12 +5,14 @@
 
 namespace armada {
 
-double ApproachSpeed(const ReferenceConfig& config, double error_m) {
-  const double linear_until_m = config.approach_braking_m_s2 / (config.alpha_1_s * config.alpha_1_s);
-  const double speed = error_m <= linear_until_m
-                           ? config.alpha_1_s * error_m
-                           : std::sqrt(2.0 * config.approach_braking_m_s2 * (error_m - 0.5 * linear_until_m));
-  return std::min(speed, config.approach_speed_m_s);
+double Approach::Speed(double error_m, double step_s) const {
+  const double linear_until_m = braking_m_s2 / (alpha_1_s * alpha_1_s);
+  double speed = alpha_1_s * error_m / (1.0 + alpha_1_s * step_s);
+  if (error_m - step_s * speed > linear_until_m) {
+    const double lost_m_s = braking_m_s2 * step_s;
+    speed = std::sqrt(lost_m_s * lost_m_s + 2.0 * braking_m_s2 * (error_m - 0.5 * linear_until_m)) - lost_m_s;
+  }
+  return std::min(speed, speed_m_s);
 }
 
 TaskVector ClampToReach(const ReferenceConfig& config, const PlanarArm& arm, const TaskVector& x_m) {
@@ -24,19 +26,28 @@ TaskVector ClampToReach(const ReferenceConfig& config, const PlanarArm& arm, con
   return x_m;
 }
 
-JointVector ReferenceVelocity(const ReferenceConfig& config, const PseudoinverseConfig& pseudoinverse,
-                              const SubtaskConfig& subtask, const PlanarArm& arm, const JointVector& q,
-                              const Zeta& zeta, bool synced) {
+JointVector ReferenceVelocity(const ReferenceConfig& config, const Approach& approach,
+                              const PseudoinverseConfig& pseudoinverse, const SubtaskConfig& subtask,
+                              const PlanarArm& arm, const JointVector& q, const Zeta& zeta, bool synced) {
+  return ReferenceVelocity(config, approach, pseudoinverse, subtask, arm, q, q, 0.0, zeta, synced);
+}
+
+JointVector ReferenceVelocity(const ReferenceConfig& config, const Approach& approach,
+                              const PseudoinverseConfig& pseudoinverse, const SubtaskConfig& subtask,
+                              const PlanarArm& arm, const JointVector& q, const JointVector& dq,
+                              double step_s, const Zeta& zeta, bool synced) {
   if (!synced) return JointVector::Zero(arm.dof());
   const PlanarArm::Posture at = arm.At(q);
   const JacobianMatrix J = arm.Jacobian(at);
   const InverseMatrix J_sharp = DampedPseudoinverse(pseudoinverse, J).J_sharp;
 
-  const TaskVector e = ClampToReach(config, arm, zeta.x_m) - arm.Position(at);
+  // The error there would be if dq had been v_hat's.
+  TaskVector e = ClampToReach(config, arm, zeta.x_m) - arm.Position(at);
+  if (step_s > 0.0) e += step_s * (J * dq - zeta.v_m_s);
   const double error_m = e.norm();
   TaskVector r = zeta.v_m_s;
   // Not `> 0`: an estimate that is not a number must show in the torque, where the gate stops it.
-  if (error_m != 0.0) r += (ApproachSpeed(config, error_m) / error_m) * e;
+  if (error_m != 0.0) r += (approach.Speed(error_m, step_s) / error_m) * e;
 
   JointVector dq_r = J_sharp * r;  // (1.5)
   if (arm.dof() > J.rows() && subtask.kind != SubtaskKind::kNone) {

@@ -4,15 +4,27 @@
 #include <algorithm>
 
 namespace armada {
+namespace {
 
-RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
-                     double sample_to_torque_s)
+ParameterMatrix CovarianceAtStart(const AdaptationConfig& config, const Learned& learned) {
+  const Eigen::Index p = learned.theta_hat.size();
+  if (config.kind != AdaptationKind::kKalman && config.kind != AdaptationKind::kBoth)
+    return ParameterMatrix::Zero(p, p);
+  if (learned.P_theta.size() > 0) return learned.P_theta;
+  return ParameterMatrix::Identity(p, p) * (config.initial_deviation * config.initial_deviation);
+}
+
+}  // namespace
+
+RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Learned& learned,
+                     const JointVector& torque_limit_Nm, double sample_to_torque_s)
     : config_(config),
       arm_(arm),
+      torque_limit_Nm_(torque_limit_Nm),
       latency_s_(sample_to_torque_s),
-      theta_hat_(theta_hat),
-      filter_(config.adaptation, arm),
-      observer_(config.disturbance_observer, arm.dof()),
+      theta_hat_(learned.theta_hat),
+      filter_(config.sensor, config.disturbance, config.adaptation.drift_variance,
+              CovarianceAtStart(config.adaptation, learned), arm),
       governor_(config.governor, JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
       tau_before_Nm_(JointVector::Zero(arm.dof())) {
@@ -21,72 +33,70 @@ RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Pa
 
 JointVector RobustLaw::Torque(const LawInput& in) {
   period_s_ = in.period_s;
-  if (started_) {
-    Learn(in);
-  } else {
-    governor_ = Governor(config_.governor, in.dq_rad_s);
-    started_ = true;
-  }
-  q_previous_rad_ = in.q_rad;
-  dq_previous_rad_s_ = in.dq_rad_s;
-
-  const State start = PredictAcrossLatency(in);
+  Estimate(in);
+  const JointState start = PredictAcrossLatency();
   const JointVector target = TargetVelocity(start, Taylor(in.zeta_next, latency_s_), in);
   const bool follows = governor_.Update(target, in.period_s);
   return ControlTorque(start, follows, in);
 }
 
-void RobustLaw::Learn(const LawInput& in) {
-  // The older torque held for the first L; over missed ticks the newer one went on.
-  const double share_of_old = std::min(1.0, latency_s_ / in.elapsed_s);
-  const JointVector tau_mean_Nm = share_of_old * tau_before_Nm_ + (1.0 - share_of_old) * tau_committed_Nm_;
-  const AppliedInterval interval{q_previous_rad_, dq_previous_rad_s_, in.q_rad,
-                                 in.dq_rad_s,     tau_mean_Nm,        in.elapsed_s};
-  const TorqueResidual residual = ResidualOf(arm_, theta_hat_, interval);
-  const AdaptationKind kind = config_.adaptation.kind;
-  if (kind == AdaptationKind::kKalman || kind == AdaptationKind::kBoth) {
-    filter_.Update(arm_, residual, theta_hat_);
-    Project(config_.projection, arm_, theta_hat_);
+void RobustLaw::Estimate(const LawInput& in) {
+  const JointState sample{in.q_rad, in.dq_rad_s};
+  if (!started_) {
+    filter_.Start(sample);
+    governor_ = Governor(config_.governor, in.dq_rad_s);
+    started_ = true;
+    return;
   }
-  observer_.Update(residual.z_Nm);
+  // The older torque held for the first L; over missed ticks the newer one went on.
+  filter_.Update(arm_, {tau_before_Nm_, latency_s_, tau_committed_Nm_}, sample, in.elapsed_s, theta_hat_);
+  Project(config_.projection, arm_, theta_hat_);
 }
 
 // Where the joints will be when this tick's torque takes effect: L later, under the torque already committed.
-RobustLaw::State RobustLaw::PredictAcrossLatency(const LawInput& in) const {
-  if (latency_s_ <= 0.0) return {in.q_rad, in.dq_rad_s};
-  JointVector ddq = JointVector::Zero(arm_.dof());
-  JointVector q_mid = in.q_rad;
-  JointVector dq_mid = in.dq_rad_s;
-  for (int iteration = 0; iteration < 3; ++iteration) {
-    const PlanarArm::Posture at = arm_.At(q_mid);
-    const JointVector bias = arm_.Bias(at, dq_mid, theta_hat_) + observer_.d_hat_Nm();
-    ddq = arm_.Inertia(at, theta_hat_).llt().solve(tau_committed_Nm_ - bias);
-    q_mid = in.q_rad + (0.5 * latency_s_) * (in.dq_rad_s + (0.25 * latency_s_) * ddq);
-    dq_mid = in.dq_rad_s + (0.5 * latency_s_) * ddq;
-  }
-  return {in.q_rad + latency_s_ * in.dq_rad_s + (0.5 * latency_s_ * latency_s_) * ddq,
-          in.dq_rad_s + latency_s_ * ddq};
+JointState RobustLaw::PredictAcrossLatency() const {
+  if (latency_s_ <= 0.0) return filter_.joints();
+  return Integrate(arm_, theta_hat_, filter_.joints(), tau_committed_Nm_ - filter_.d_hat_Nm(), latency_s_);
+}
+
+// The largest a_b with |H J# n| a_b <= what the joints' torque limits leave, n the direction to x_hat.
+Approach RobustLaw::ApproachFrom(const JointState& from, const Zeta& zeta_next) const {
+  const ReferenceConfig& config = config_.reference;
+  const PlanarArm::Posture at = arm_.At(from.q_rad);
+  const JacobianMatrix J = arm_.Jacobian(at);
+  const InverseMatrix J_sharp = DampedPseudoinverse(config_.pseudoinverse, J).J_sharp;
+  const JointMatrix H_hat = arm_.Inertia(at, theta_hat_);
+  const TaskVector e = ClampToReach(config, arm_, zeta_next.x_m) - arm_.Position(at);
+  const double error_m = e.norm();
+  const TaskVector n = error_m > 0.0 ? TaskVector(e / error_m) : TaskVector(TaskVector::Unit(e.size(), 0));
+  const JointVector load_Nm =
+      H_hat * (J_sharp * zeta_next.a_m_s2) + arm_.Bias(at, from.dq_rad_s, theta_hat_) + filter_.d_hat_Nm();
+  const JointVector spare_Nm =
+      torque_limit_Nm_.array() - load_Nm.array().abs() - config_.disturbance.fast_deviation_Nm;
+  const JointVector needed_Nms2_m = (H_hat * (J_sharp * n)).cwiseAbs();
+  const double braking = config.braking_share * (spare_Nm.array() / needed_Nms2_m.array()).minCoeff();
+  return {config.alpha_per_tick / period_s_, std::max(braking, config.braking_min_m_s2),
+          config.approach_speed_m_s};
 }
 
 // dq_r(q+, zeta+) of (1.5) at the end of the period, where q+ = q + h (dq + dq_r) / 2 itself depends on dq_r.
-JointVector RobustLaw::TargetVelocity(const State& from, const Zeta& zeta_next, const LawInput& in) const {
-  const auto reference_at = [&](const JointVector& q) {
-    return ReferenceVelocity(config_.reference, config_.pseudoinverse, config_.subtask, arm_, q, zeta_next,
-                             in.synced);
-  };
+JointVector RobustLaw::TargetVelocity(const JointState& from, const Zeta& zeta_next,
+                                      const LawInput& in) const {
   const double h = in.period_s;
-  const JointVector q_coasting = from.q_rad + h * from.dq_rad_s;
-  JointVector target = reference_at(q_coasting);
-  for (int iteration = 0; iteration < 2; ++iteration) {
-    const bool reachable =
-        (target - from.dq_rad_s).cwiseAbs().maxCoeff() <= governor_.acceleration_limit_rad_s2() * h;
-    target =
-        reference_at(reachable ? JointVector(from.q_rad + (0.5 * h) * (from.dq_rad_s + target)) : q_coasting);
+  const Approach approach = ApproachFrom(from, zeta_next);
+  JointVector target = from.dq_rad_s;
+  bool reachable = true;
+  for (int iteration = 0; iteration < config_.reference.iterations; ++iteration) {
+    const JointVector dq_end = reachable ? target : from.dq_rad_s;
+    target = ReferenceVelocity(config_.reference, approach, config_.pseudoinverse, config_.subtask, arm_,
+                               from.q_rad + (0.5 * h) * (from.dq_rad_s + dq_end), dq_end,
+                               reachable ? 0.5 * h : 0.0, zeta_next, in.synced);
+    reachable = (target - from.dq_rad_s).cwiseAbs().maxCoeff() <= governor_.acceleration_limit_rad_s2() * h;
   }
   return target;
 }
 
-JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawInput& in) {
+JointVector RobustLaw::ControlTorque(const JointState& from, bool follows, const LawInput& in) {
   const double h = in.period_s;
   const JointVector& dq = from.dq_rad_s;
   const JointVector dq_mid = follows ? JointVector(0.5 * (dq + governor_.end_rad_s())) : dq;
@@ -109,7 +119,7 @@ JointVector RobustLaw::ControlTorque(const State& from, bool follows, const LawI
       MinimizeWithL1(config_.implicit_control, A, H_hat_ * s, h * config_.gains.K_r_Nm);
 
   const RegressorMatrix Y = arm_.Regressor(at, dq_mid, dq_r, ddq_r);
-  JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + observer_.d_hat_Nm();
+  JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + filter_.d_hat_Nm();
 
   const AdaptationKind kind = config_.adaptation.kind;
   if (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth) {

@@ -9,10 +9,10 @@ namespace armada {
 /// Steps and their reasons: docs/equations.md.
 class RobustLaw {
  public:
-  /// `theta_hat` is projected first. `sample_to_torque_s` is the delay L that is compensated, below one
-  /// period.
-  RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
-            double sample_to_torque_s);
+  /// learned.theta_hat is projected first; `torque_limit_Nm` is what may be sent, n components.
+  /// `sample_to_torque_s` is the delay L that is compensated, below one period.
+  RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Learned& learned,
+            const JointVector& torque_limit_Nm, double sample_to_torque_s);
 
   /// Torque wanted over the next period, n components, not limited.
   JointVector Torque(const LawInput& in);
@@ -21,27 +21,24 @@ class RobustLaw {
   void Applied(const JointVector& wanted_Nm, const JointVector& sent_Nm);
 
   const ParameterVector& theta_hat() const { return theta_hat_; }
-  const JointVector& d_hat_Nm() const { return observer_.d_hat_Nm(); }
+  ParameterMatrix P_theta() const { return filter_.P_theta(); }
+  const JointVector& d_hat_Nm() const { return filter_.d_hat_Nm(); }
 
  private:
-  struct State {
-    JointVector q_rad;
-    JointVector dq_rad_s;
-  };
-  void Learn(const LawInput& in);
-  State PredictAcrossLatency(const LawInput& in) const;
-  JointVector TargetVelocity(const State& from, const Zeta& zeta_next, const LawInput& in) const;
-  JointVector ControlTorque(const State& from, bool follows, const LawInput& in);
+  void Estimate(const LawInput& in);
+  JointState PredictAcrossLatency() const;
+  Approach ApproachFrom(const JointState& from, const Zeta& zeta_next) const;
+  JointVector TargetVelocity(const JointState& from, const Zeta& zeta_next, const LawInput& in) const;
+  JointVector ControlTorque(const JointState& from, bool follows, const LawInput& in);
 
   ControlConfig config_;
   PlanarArm arm_;
+  JointVector torque_limit_Nm_;
   double latency_s_;
   ParameterVector theta_hat_;
-  ParameterFilter filter_;
-  DisturbanceObserver observer_;
+  AugmentedFilter filter_;
   Governor governor_;
   bool started_ = false;
-  JointVector q_previous_rad_, dq_previous_rad_s_;
   JointVector tau_committed_Nm_;  ///< on its way to, or at, the drives
   JointVector tau_before_Nm_;     ///< in force until that one took over
   JointMatrix H_hat_;             ///< of this tick, for anti-windup

@@ -25,6 +25,9 @@ void MeasureReach(const PlanarArm& arm, const LeaderPath& leader, double length_
 }
 
 // The arm as a perfect controller would move it.
+// Pulls the perfect arm back onto the path against the integration's rounding.
+constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
+
 class PerfectMotion {
  public:
   PerfectMotion(const ArmEntry& entry, const LeaderPath& leader, double elbow_rad)
@@ -52,7 +55,7 @@ class PerfectMotion {
 
  private:
   JointVector Velocity(double t_s, const JointVector& q) const {
-    return ReferenceVelocity(control_.reference, control_.pseudoinverse, control_.subtask, arm_, q,
+    return ReferenceVelocity(control_.reference, kApproach, control_.pseudoinverse, control_.subtask, arm_, q,
                              leader_.At(t_s), true);
   }
 

@@ -209,7 +209,7 @@ TEST(ValueText, NumbersReadBackExactly) {
 }
 
 TEST(EffectiveValues, NameEveryParameterWithItsUnit) {
-  const auto values = EffectiveValues(Paper({"arm.6.control.reference.alpha_1_s=40"}));
+  const auto values = EffectiveValues(Paper({"arm.6.control.reference.alpha_per_tick=2"}));
   const auto find = [&](const std::string& key) {
     for (const EffectiveValue& value : values) {
       if (value.key == key) return value.value + " " + value.unit;
@@ -217,7 +217,7 @@ TEST(EffectiveValues, NameEveryParameterWithItsUnit) {
     return std::string("none");
   };
   EXPECT_EQ(find("timing.period_s"), "0.01 s");
-  EXPECT_EQ(find("arm.6.control.reference.alpha_1_s"), "40 1/s");
+  EXPECT_EQ(find("arm.6.control.reference.alpha_per_tick"), "2 1/period");
   EXPECT_EQ(find("arm.7.link.3.I_kgm2"), "5 kg m^2");
   EXPECT_EQ(find("estimator.kind"), "\"predictive\" ");
 }

@@ -61,7 +61,7 @@ inline ArmControllerConfig PaperController(const PlanarArmConfig& arm) {
   ArmControllerConfig config;
   config.arm = arm;
   config.control.gains.K_s_Nms_rad[0] = arm.dof > 2 ? 150.0 : 100.0;
-  config.control.gains.Expand(arm.dof, PlanarArm::kTaskDim);
+  config.control.Expand(arm.dof, PlanarArm::kTaskDim);
   config.torque_limit_Nm = JointVector::Constant(arm.dof, arm.dof > 2 ? 300.0 : 150.0);
   return config;
 }

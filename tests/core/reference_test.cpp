@@ -15,30 +15,46 @@ namespace {
 const ReferenceConfig kReference;
 const PseudoinverseConfig kPseudoinverse;
 
-TEST(ApproachSpeed, IsLinearThenBrakingThenConstant) {
-  const double linear_until_m =
-      kReference.approach_braking_m_s2 / (kReference.alpha_1_s * kReference.alpha_1_s);
-  EXPECT_DOUBLE_EQ(ApproachSpeed(kReference, 0.0), 0.0);
-  EXPECT_DOUBLE_EQ(ApproachSpeed(kReference, 0.5 * linear_until_m),
-                   kReference.alpha_1_s * 0.5 * linear_until_m);
-  EXPECT_DOUBLE_EQ(ApproachSpeed(kReference, 0.1),
-                   std::sqrt(2.0 * kReference.approach_braking_m_s2 * (0.1 - 0.5 * linear_until_m)));
-  EXPECT_DOUBLE_EQ(ApproachSpeed(kReference, 3.0), kReference.approach_speed_m_s);
+constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
+
+TEST(Approach, IsLinearThenBrakingThenConstant) {
+  const double linear_until_m = kApproach.braking_m_s2 / (kApproach.alpha_1_s * kApproach.alpha_1_s);
+  EXPECT_DOUBLE_EQ(kApproach.Speed(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(kApproach.Speed(0.5 * linear_until_m), kApproach.alpha_1_s * 0.5 * linear_until_m);
+  EXPECT_DOUBLE_EQ(kApproach.Speed(0.1),
+                   std::sqrt(2.0 * kApproach.braking_m_s2 * (0.1 - 0.5 * linear_until_m)));
+  EXPECT_DOUBLE_EQ(kApproach.Speed(3.0), kApproach.speed_m_s);
 }
 
 // Following the profile, dv/dt = -v dv/de: never above the braking allowed, so the speed can be held to.
-TEST(ApproachSpeed, IsContinuousMonotoneAndNeverBrakesHarderThanAllowed) {
+TEST(Approach, IsContinuousMonotoneAndNeverBrakesHarderThanAllowed) {
   constexpr double kStep_m = 1e-6;
   double before = 0.0;
   for (double error_m = 0.0; error_m < 0.6; error_m += kStep_m) {
-    const double speed = ApproachSpeed(kReference, error_m);
+    const double speed = kApproach.Speed(error_m);
     ASSERT_GE(speed, before);
-    ASSERT_LE(speed - before, 1.01 * kReference.alpha_1_s * kStep_m);
-    ASSERT_LE(before * (speed - before) / kStep_m, kReference.approach_braking_m_s2 * (1.0 + 1e-6));
-    ASSERT_LE(speed, kReference.approach_speed_m_s);
+    ASSERT_LE(speed - before, 1.01 * kApproach.alpha_1_s * kStep_m);
+    ASSERT_LE(before * (speed - before) / kStep_m, kApproach.braking_m_s2 * (1.0 + 1e-6));
+    ASSERT_LE(speed, kApproach.speed_m_s);
     before = speed;
   }
-  EXPECT_EQ(before, kReference.approach_speed_m_s);
+  EXPECT_EQ(before, kApproach.speed_m_s);
+}
+
+TEST(Approach, ImplicitSpeedIsThatOfTheDistanceLeft) {
+  RandomArms random(8);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Approach approach{.alpha_1_s = random.In(1.0, 1000.0),
+                            .braking_m_s2 = random.In(0.5, 50.0),
+                            .speed_m_s = random.In(0.1, 5.0)};
+    const double step_s = random.In(0.0, 0.02);
+    const double error_m = std::pow(10.0, random.In(-6.0, 0.5));
+    const double speed = approach.Speed(error_m, step_s);
+    const double left_m = error_m - step_s * speed;
+    ASSERT_GE(left_m, -1e-12);  // for any alpha: never past the target
+    // At the bound of speed the distance left may have a higher speed of its own.
+    EXPECT_NEAR(speed, approach.Speed(left_m), speed < approach.speed_m_s ? 1e-9 * (1.0 + speed) : 1e9);
+  }
 }
 
 TEST(ClampToReach, LeavesReachablePointsAndMovesOthersAlongTheirRadius) {
@@ -65,7 +81,7 @@ TEST(ClampToReach, IsFiniteAtTheCentre) {
 
 JointVector ReferenceOf(const PlanarArm& arm, const JointVector& q, const Zeta& zeta,
                         const SubtaskConfig& subtask = {}, const ReferenceConfig& config = kReference) {
-  return ReferenceVelocity(config, kPseudoinverse, subtask, arm, q, zeta, true);
+  return ReferenceVelocity(config, kApproach, kPseudoinverse, subtask, arm, q, zeta, true);
 }
 
 // An estimate the arm can follow: near its end effector, moving slowly.
@@ -92,11 +108,32 @@ TEST(ReferenceVelocity, MovesTheEndEffectorAsWantedAwayFromSingularities) {  // 
     if ((arm.Position(arm.At(q)) - arm.Base()).norm() > arm.reach_max_m() - 0.1) continue;
     if ((arm.Position(arm.At(q)) - arm.Base()).norm() < arm.reach_min_m() + 0.1) continue;
     const TaskVector e = zeta.x_m - arm.Position(arm.At(q));
-    const TaskVector wanted = zeta.v_m_s + e.normalized() * ApproachSpeed(kReference, e.norm());
+    const TaskVector wanted = zeta.v_m_s + e.normalized() * kApproach.Speed(e.norm());
     EXPECT_LT((arm.Jacobian(arm.At(q)) * dq_r - wanted).norm(), 1e-9);
     ++checked;
   }
   EXPECT_GT(checked, 300);
+}
+
+// (1.5) at q+ = q + h (dq + dq_r) / 2, to second order in the way of a tick: the pull is that of the error
+// left.
+TEST(ReferenceVelocity, ImplicitFormIsStableForAnyAlpha) {
+  const PlanarArm arm(PaperArm(4));
+  const JointVector q{{0.3, 1.2}};
+  Zeta zeta{arm.Position(arm.At(q)) + TaskVector{{1e-3, -2e-3}}, TaskVector::Zero(2), TaskVector::Zero(2)};
+  for (const double alpha_1_s : {10.0, 100.0, 1e3, 1e4}) {
+    const Approach approach{.alpha_1_s = alpha_1_s, .braking_m_s2 = 1e6, .speed_m_s = 1e3};
+    constexpr double kHalf_s = 0.005;
+    JointVector dq_r = JointVector::Zero(2);
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      dq_r = ReferenceVelocity(kReference, approach, kPseudoinverse, {}, arm, q + kHalf_s * dq_r, dq_r,
+                               kHalf_s, zeta, true);
+    }
+    const JointVector q_end = q + kHalf_s * dq_r;
+    const TaskVector e_end = zeta.x_m - arm.Position(arm.At(q_end));
+    const TaskVector pull = arm.Jacobian(arm.At(q_end)) * dq_r;
+    EXPECT_LT((pull - alpha_1_s * e_end).norm(), 1e-3 * pull.norm()) << alpha_1_s;
+  }
 }
 
 TEST(ReferenceVelocity, SubtaskMovesTheSpareJointsOnly) {
@@ -148,7 +185,8 @@ TEST(ReferenceVelocity, IsZeroUntilSynced) {
   RandomArms random(5);
   const PlanarArm arm(PaperArm(3));
   const JointVector q = random.Numbers(2, 3.0);
-  EXPECT_TRUE(ReferenceVelocity(kReference, kPseudoinverse, {}, arm, q, NearbyTarget(arm, q, random), false)
+  EXPECT_TRUE(ReferenceVelocity(kReference, kApproach, kPseudoinverse, {}, arm, q,
+                                NearbyTarget(arm, q, random), false)
                   .isZero(0.0));
 }
 
@@ -186,7 +224,7 @@ JointVector AnalyticAcceleration(const PlanarArm& arm, const JointVector& q, con
   const auto [M, dM] = DampedInverse(J * J.transpose(), dJ * J.transpose() + J * dJ.transpose());
   const Eigen::MatrixXd J_sharp = J.transpose() * M;
   const Eigen::MatrixXd dJ_sharp = dJ.transpose() * M + J.transpose() * dM;
-  const double alpha = kReference.alpha_1_s;
+  const double alpha = kApproach.alpha_1_s;
   const TaskVector r = zeta.v_m_s - alpha * (arm.Position(at) - zeta.x_m);
   const TaskVector dr = zeta.a_m_s2 - alpha * (J * dq - zeta.v_m_s);
   const auto phi_at = [&](const JointVector& position) {

@@ -21,7 +21,7 @@ ArmEntry Arm(int id, const std::vector<LinkConfig>& links) {
   for (int node_id = 1; node_id <= entry.arm.dof; ++node_id) {
     entry.joints.push_back({.node_id = node_id, .torque_limit_Nm = entry.arm.dof == 2 ? 150.0 : 300.0});
   }
-  entry.control.gains.Expand(entry.arm.dof, PlanarArm::kTaskDim);
+  entry.control.Expand(entry.arm.dof, PlanarArm::kTaskDim);
   return entry;
 }
 

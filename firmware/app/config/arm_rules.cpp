@@ -23,7 +23,7 @@ class ArmRules {
     if (!links_good) return;  // everything below counts or measures links
     CheckJoints();
     if (!IsClean(at_.At("control"), *errors_) || !IsClean(root_.At("control"), *errors_)) return;
-    CheckGains();
+    CheckCounts();
     CheckLaw();
     CheckSubtask();
     const bool bounds_good = CheckProjectionBounds();
@@ -149,11 +149,14 @@ class ArmRules {
            errors_);
   }
 
-  void CheckGains() {
+  void CheckCounts() {
     const GainsConfig& gains = arm_.control.gains;
     CheckCount("gains.K_s_Nms_rad", gains.K_s_Nms_rad.size(), dof(), "a joint");
     CheckCount("gains.K_r_Nm", gains.K_r_Nm.size(), dof(), "a joint");
     CheckCount("gains.K_x_Ns_m", gains.K_x_Ns_m.size(), PlanarArm::kTaskDim, "an axis");
+    const SensorConfig& sensor = arm_.control.sensor;
+    CheckCount("sensor.position_deviation_rad", sensor.position_deviation_rad.size(), dof(), "a joint");
+    CheckCount("sensor.velocity_deviation_rad_s", sensor.velocity_deviation_rad_s.size(), dof(), "a joint");
   }
 
   void CheckLaw() {
@@ -161,14 +164,6 @@ class ArmRules {
       Report(Control("law"),
              "given \"paper\", which needs at least 2 joints; arm " + std::to_string(arm_.id) +
                  " has 1: allowed is \"robust\"",
-             errors_);
-    }
-    const double alpha = arm_.control.reference.alpha_1_s;
-    if (arm_.control.law == LawKind::kRobust && IsClean(root_.At("timing"), *errors_) &&
-        alpha * fleet_.timing.period_s > 1.0) {
-      Report(Control("reference.alpha_1_s"),
-             "given " + ValueText(alpha) + " 1/s, allowed is at most 1 / timing.period_s = " +
-                 ValueText(1.0 / fleet_.timing.period_s) + " 1/s",
              errors_);
     }
   }

@@ -14,7 +14,7 @@ ArmEntry EntryOf(const ArmLayout& layout) {
   entry.can = layout.can;
   entry.joints = layout.joint;
   entry.control = layout.control;
-  entry.control.gains.Expand(entry.arm.dof, PlanarArm::kTaskDim);
+  entry.control.Expand(entry.arm.dof, PlanarArm::kTaskDim);
   return entry;
 }
 
