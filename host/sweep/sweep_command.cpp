@@ -1,86 +1,16 @@
 #include "host/sweep/sweep_command.h"
 
-#include <unistd.h>
-
-#include <atomic>
-#include <charconv>
-#include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <mutex>
-#include <thread>
 
 #include "firmware/app/exit_codes.h"
 #include "host/sim/simulation.h"
+#include "host/sweep/seed_jobs.h"
 #include "host/sweep/sweep_result.h"
 
 namespace armada {
 namespace {
-
-// "<first><separator><second>" as two numbers.
-bool ParsePair(const std::string& text, char separator, uint64_t* first, uint64_t* second) {
-  const char* end = text.data() + text.size();
-  auto [middle, code] = std::from_chars(text.data(), end, *first);
-  if (code != std::errc() || middle == end || *middle != separator) return false;
-  auto [rest, second_code] = std::from_chars(middle + 1, end, *second);
-  return second_code == std::errc() && rest == end;
-}
-
-/// Seeds of a sweep in turn to threads; results in the seeds' order, whoever computed them.
-class Runner {
- public:
-  Runner(const ScenarioConfig& scenario, std::vector<uint64_t> seeds)
-      : scenario_(scenario), seeds_(std::move(seeds)), results_(seeds_.size()) {}
-
-  std::vector<SeedResult> Run(int jobs, bool progress) {
-    std::vector<std::thread> threads;
-    threads.reserve(static_cast<size_t>(jobs));
-    for (int i = 0; i < jobs; ++i) threads.emplace_back([this] { Work(); });
-    if (progress) ShowProgress();
-    for (std::thread& thread : threads) thread.join();
-    return std::move(results_);
-  }
-
- private:
-  void Work() {
-    for (size_t i = next_++; i < seeds_.size(); i = next_++) {
-      results_[i] = SeedResult::Of(Simulation(scenario_, seeds_[i]).Run(nullptr));
-      const std::lock_guard<std::mutex> lock(mutex_);
-      ++done_;
-      if (results_[i].ok) ++ok_;
-      changed_.notify_one();
-    }
-  }
-
-  void ShowProgress() {
-    const auto start = std::chrono::steady_clock::now();
-    std::unique_lock<std::mutex> lock(mutex_);
-    while (done_ < seeds_.size()) {
-      changed_.wait_for(lock, std::chrono::milliseconds(200));
-      const double share = static_cast<double>(done_) / static_cast<double>(seeds_.size());
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      const double rest_s = share > 0.0 ? elapsed.count() * (1.0 / share - 1.0) : 0.0;
-      constexpr int kWidth = 40;
-      const int filled = static_cast<int>(share * kWidth);
-      std::fprintf(stderr, "\r[%s%s] %zu/%zu seeds, %zu ok, %.0f s left ",
-                   std::string(static_cast<size_t>(filled), '#').c_str(),
-                   std::string(static_cast<size_t>(kWidth - filled), '.').c_str(), done_, seeds_.size(), ok_,
-                   rest_s);
-    }
-    std::fputc('\n', stderr);
-  }
-
-  const ScenarioConfig& scenario_;
-  std::vector<uint64_t> seeds_;
-  std::vector<SeedResult> results_;
-  std::atomic<size_t> next_{0};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  size_t done_ = 0;
-  size_t ok_ = 0;
-};
 
 int Usage(const std::string& message) {
   std::cerr << "armada sweep: " << message << '\n';
@@ -134,7 +64,7 @@ int Finish(const Sweep& sweep, const std::string& json) {
 
 int RunSweepCommand(const SweepOptions& options) {
   uint64_t first = 0, last = 0, shard = 0, shards = 0;
-  if (!ParsePair(options.seeds, ':', &first, &last) || last < first) {
+  if (!ParseSeeds(options.seeds, &first, &last)) {
     return Usage("--seeds " + options.seeds + ": allowed is A:B with A <= B");
   }
   if (!ParsePair(options.shard, '/', &shard, &shards) || shard < 1 || shard > shards) {
@@ -144,12 +74,12 @@ int RunSweepCommand(const SweepOptions& options) {
   if (!scenario) return kExitBadConfig;
   std::vector<uint64_t> seeds;
   for (uint64_t seed = first + shard - 1; seed <= last; seed += shards) seeds.push_back(seed);
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const bool progress = isatty(STDERR_FILENO) != 0;
-  return Finish(
-      {scenario->name, options.scenario.Overrides(), Runner(*scenario, std::move(seeds)).Run(jobs, progress)},
-      options.json);
+  std::vector<SeedResult> results(seeds.size());
+  RunSeedJobs(seeds, options.jobs, [&](size_t index, uint64_t seed) {
+    results[index] = SeedResult::Of(Simulation(*scenario, seed).Run(nullptr));
+    return results[index].ok;
+  });
+  return Finish({scenario->name, options.scenario.Overrides(), std::move(results)}, options.json);
 }
 
 int RunSweepMergeCommand(const std::vector<std::string>& files, const std::string& json) {
