@@ -5,11 +5,7 @@
 #include "hil/random.h"
 
 namespace armada {
-namespace {
-
-// Joint angles that put the end effector at x, from a bent elbow: damped least squares, always the same
-// branch.
-JointVector SolveInverseKinematics(const PlanarArm& arm, const TaskVector& x) {
+JointVector BentElbow(const PlanarArm& arm, const TaskVector& x_m) {
   JointVector q = JointVector::Constant(arm.dof(), 1.2);
   q[0] = 0.3 - arm.config().base_orientation_rad;
   for (int iteration = 0; iteration < 300; ++iteration) {
@@ -17,14 +13,12 @@ JointVector SolveInverseKinematics(const PlanarArm& arm, const TaskVector& x) {
     const JacobianMatrix J = arm.Jacobian(at);
     Eigen::Matrix2d JJt = J * J.transpose();
     JJt.diagonal().array() += 1e-3;
-    const Eigen::Vector2d error = x - arm.Position(at);
+    const Eigen::Vector2d error = x_m - arm.Position(at);
     const Eigen::Vector2d weighted = JJt.llt().solve(error);
     q += J.transpose() * weighted;
   }
   return q;
 }
-
-}  // namespace
 
 ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader) {
   const StartConfig& config = scenario.start;
@@ -49,7 +43,7 @@ ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, 
   if (config.kind == StartKind::kNearLeader) {
     TaskVector x = zeta.x_m;
     for (double& x_c : x) x_c += draw(-config.near_leader_m, config.near_leader_m);
-    const JointVector q = SolveInverseKinematics(arm, x);
+    const JointVector q = BentElbow(arm, x);
     std::copy(q.data(), q.data() + q.size(), start.q_rad.begin());
   }
   for (TaskVector* part : {&zeta.x_m, &zeta.v_m_s, &zeta.a_m_s2}) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hil/scenario.h"
+
+namespace armada {
+
+/// The unavoidable error of one arm in one run, over the scenario's window as a run measures it.
+struct ArmFloor {
+  int id = 0;
+  int dof = 0;
+  double rms_m = 0.0;
+  double max_m = 0.0;
+};
+
+/// Of a fleet: docs/floor.md.
+struct FloorResult {
+  uint64_t seed = 0;
+  std::vector<ArmFloor> arms;
+  double fleet_rms_m = 0.0;  ///< root of the mean over the arms of the squared rms_m
+};
+
+/// The error that is left to a controller which knows the plant and the leader and has every torque it wants,
+/// under the scenario's disturbance of this seed, its sampling, its latency and its sensors. The same
+/// arguments give the same bytes.
+/// @pre the scenario has a leader.
+FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed);
+
+}  // namespace armada
