@@ -8,6 +8,7 @@
 #include "hil/scenario_file.h"
 #include "host/can/can_command.h"
 #include "host/check.h"
+#include "host/floor/floor_command.h"
 #include "host/report_command.h"
 #include "host/run/run_command.h"
 #include "host/sim/sim_command.h"
@@ -64,6 +65,18 @@ int main(int argc, char** argv) {
   sweep_command->callback([&] {
     if (!merge_command->parsed()) code = RunSweepCommand(sweep);
   });
+
+  FloorOptions floor;
+  CLI::App* floor_command =
+      app.add_subcommand("floor", "the error that no controller can avoid under a scenario's disturbance");
+  floor.scenario.AddScenarioTo(floor_command);
+  auto* floor_seed = floor_command->add_option("--seed", floor.seed, "seed of disturbance and noise");
+  floor_seed->capture_default_str();
+  floor_command->add_option("--seeds", floor.seeds, "A:B, both included, instead of one seed")
+      ->excludes(floor_seed);
+  floor_command->add_option("--jobs", floor.jobs, "threads; 0: all cores")->capture_default_str();
+  floor_command->add_option("--json", floor.json, "write the result here, every seed included");
+  floor_command->callback([&] { code = RunFloorCommand(floor); });
 
   RunOptions run;
   run.program_directory = ProgramDirectory();

@@ -8,10 +8,14 @@
 namespace armada {
 
 void ScenarioArguments::AddTo(CLI::App* command) {
-  command->add_option("SCENARIO", scenario, "scenario file (TOML)")->required();
+  AddScenarioTo(command);
   command->add_option("--law", law, "local law instead of the fleet's: paper, robust");
   command->add_option("--estimator", estimator,
                       "estimator instead of the fleet's: paper, implicit, predictive");
+}
+
+void ScenarioArguments::AddScenarioTo(CLI::App* command) {
+  command->add_option("SCENARIO", scenario, "scenario file (TOML)")->required();
   command->add_option("--seconds", seconds, "length of the run instead of the scenario's")->take_last();
   command
       ->add_option("--set", sets,

@@ -10,7 +10,7 @@
 
 namespace armada {
 
-/// What every command that runs a scenario takes.
+/// What every command that works on a scenario takes.
 struct ScenarioArguments {
   std::string scenario;
   std::string law;
@@ -18,7 +18,10 @@ struct ScenarioArguments {
   std::optional<double> seconds;
   std::vector<std::string> sets;
 
+  /// Everything, for commands that run the fleet.
   void AddTo(CLI::App* command);
+  /// Without --law and --estimator, for commands that the fleet's control does not concern.
+  void AddScenarioTo(CLI::App* command);
   /// The overrides in order: --law, --estimator, --seconds, then each --set.
   std::vector<std::string> Overrides() const;
   /// The scenario with its overrides; every error is printed to stderr when there is none.

@@ -154,18 +154,37 @@ ArmFloor ArmRun::Run() {
   return {entry_.id, entry_.arm.dof, record_.rms_m(), record_.max_m()};
 }
 
+double FleetRms_m(const std::vector<ArmFloor>& arms) {
+  double squares_m2 = 0.0;
+  for (const ArmFloor& arm : arms) squares_m2 += arm.rms_m * arm.rms_m;
+  return std::sqrt(squares_m2 / static_cast<double>(arms.size()));
+}
+
 }  // namespace
 
 FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed) {
   const LeaderPath leader(scenario.leader);
-  FloorResult result{.seed = seed, .arms = {}, .fleet_rms_m = 0.0};
-  double sum_squares_m2 = 0.0;
+  FloorResult floor;
   for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
-    result.arms.push_back(ArmRun(scenario, i, seed, leader).Run());
-    sum_squares_m2 += result.arms.back().rms_m * result.arms.back().rms_m;
+    floor.arms.push_back(ArmRun(scenario, i, seed, leader).Run());
   }
-  result.fleet_rms_m = std::sqrt(sum_squares_m2 / static_cast<double>(result.arms.size()));
-  return result;
+  floor.fleet_rms_m = FleetRms_m(floor.arms);
+  return floor;
+}
+
+FloorResult Together(const std::vector<FloorResult>& floors) {
+  FloorResult together = floors.front();
+  for (size_t i = 0; i < together.arms.size(); ++i) {
+    ArmFloor& arm = together.arms[i];
+    double squares_m2 = 0.0;
+    for (const FloorResult& floor : floors) {
+      squares_m2 += floor.arms[i].rms_m * floor.arms[i].rms_m;
+      arm.max_m = std::max(arm.max_m, floor.arms[i].max_m);
+    }
+    arm.rms_m = std::sqrt(squares_m2 / static_cast<double>(floors.size()));
+  }
+  together.fleet_rms_m = FleetRms_m(together.arms);
+  return together;
 }
 
 }  // namespace armada

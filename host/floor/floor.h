@@ -17,7 +17,6 @@ struct ArmFloor {
 
 /// Of a fleet: docs/floor.md.
 struct FloorResult {
-  uint64_t seed = 0;
   std::vector<ArmFloor> arms;
   double fleet_rms_m = 0.0;  ///< root of the mean over the arms of the squared rms_m
 };
@@ -27,5 +26,9 @@ struct FloorResult {
 /// arguments give the same bytes.
 /// @pre the scenario has a leader.
 FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed);
+
+/// Of several seeds together: the root of the mean of each RMS squared, the largest of each maximum. @pre one
+/// or more, of one fleet.
+FloorResult Together(const std::vector<FloorResult>& floors);
 
 }  // namespace armada
