@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   sim_command->add_option("--json", sim.json, "write metrics.json here");
   sim_command->add_option("--trace", sim.trace,
                           "write traces and metrics into this directory, for `armada report`");
+  sim_command->add_flag("--floor", sim.floor, "the unavoidable error, too, and how far above it each arm is");
   sim_command->callback([&] { code = RunSimCommand(sim); });
 
   SweepOptions sweep;
@@ -62,6 +63,8 @@ int main(int argc, char** argv) {
   sweep_command->add_option("--shard", sweep.shard, "I/N: every N-th seed from the I-th")
       ->capture_default_str();
   sweep_command->add_option("--json", sweep.json, "write the result here, every seed included");
+  sweep_command->add_flag("--floor", sweep.floor,
+                          "the unavoidable error, too, and how far above it each arm is");
   sweep_command->callback([&] {
     if (!merge_command->parsed()) code = RunSweepCommand(sweep);
   });

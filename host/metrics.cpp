@@ -17,23 +17,32 @@ nlohmann::ordered_json OrNull(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+void AddFloor(const std::optional<double>& floor_rms_m, double rms_m, nlohmann::ordered_json* json) {
+  if (!floor_rms_m) return;
+  (*json)["floor_rms_mm"] = *floor_rms_m * 1e3;
+  (*json)["over_floor"] = rms_m / *floor_rms_m;
+}
+
 nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
-  return {{"id", arm.id},
-          {"dof", arm.dof},
-          {"subtask", NameOf(arm.subtask)},
-          {"diverged", arm.diverged},
-          {"settled_s", OrNull(arm.settled_s)},
-          {"rms_mm", arm.rms_m * 1e3},
-          {"max_mm", arm.max_m * 1e3},
-          {"estimator_rms",
-           {{"x", arm.estimator_rms.x_m}, {"v", arm.estimator_rms.v_m_s}, {"a", arm.estimator_rms.a_m_s2}}},
-          {"torque_max_nm", arm.torque_max_Nm},
-          {"saturated_ticks", arm.saturated_ticks},
-          {"parameter_error", arm.parameter_error},
-          {"subtask_rms", OrNull(arm.subtask_rms_rad_s)},
-          {"posture_rms_rad", OrNull(arm.posture_rms_rad)},
-          {"state", arm.state},
-          {"faults", arm.faults}};
+  nlohmann::ordered_json json = {
+      {"id", arm.id},
+      {"dof", arm.dof},
+      {"subtask", NameOf(arm.subtask)},
+      {"diverged", arm.diverged},
+      {"settled_s", OrNull(arm.settled_s)},
+      {"rms_mm", arm.rms_m * 1e3},
+      {"max_mm", arm.max_m * 1e3},
+      {"estimator_rms",
+       {{"x", arm.estimator_rms.x_m}, {"v", arm.estimator_rms.v_m_s}, {"a", arm.estimator_rms.a_m_s2}}},
+      {"torque_max_nm", arm.torque_max_Nm},
+      {"saturated_ticks", arm.saturated_ticks},
+      {"parameter_error", arm.parameter_error},
+      {"subtask_rms", OrNull(arm.subtask_rms_rad_s)},
+      {"posture_rms_rad", OrNull(arm.posture_rms_rad)},
+      {"state", arm.state},
+      {"faults", arm.faults}};
+  AddFloor(arm.floor_rms_m, arm.rms_m, &json);
+  return json;
 }
 
 }  // namespace
@@ -52,22 +61,29 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
     ok = false;
 }
 
+void RunMetrics::CompareWith(const FloorResult& floor) {
+  floor_rms_m = floor.fleet_rms_m;
+  for (size_t i = 0; i < arms.size(); ++i) arms[i].floor_rms_m = floor.arms[i].rms_m;
+}
+
 nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   nlohmann::ordered_json arms = nlohmann::ordered_json::array();
   for (const ArmMetrics& arm : metrics.arms) arms.push_back(ToJson(arm));
-  return {{"schema", 1},
-          {"scenario", metrics.scenario},
-          {"scenario_file", metrics.scenario_file},
-          {"mode", metrics.mode},
-          {"law", NameOf(metrics.law)},
-          {"estimator", NameOf(metrics.estimator)},
-          {"seed", metrics.seed},
-          {"seconds", metrics.seconds},
-          {"window_s", {metrics.window_start_s, metrics.seconds}},
-          {"arms", arms},
-          {"estimate_spread_mm", metrics.estimate_spread_m * 1e3},
-          {"fleet_rms_mm", metrics.fleet_rms_m * 1e3},
-          {"ok", metrics.ok}};
+  nlohmann::ordered_json json = {{"schema", 1},
+                                 {"scenario", metrics.scenario},
+                                 {"scenario_file", metrics.scenario_file},
+                                 {"mode", metrics.mode},
+                                 {"law", NameOf(metrics.law)},
+                                 {"estimator", NameOf(metrics.estimator)},
+                                 {"seed", metrics.seed},
+                                 {"seconds", metrics.seconds},
+                                 {"window_s", {metrics.window_start_s, metrics.seconds}},
+                                 {"arms", arms},
+                                 {"estimate_spread_mm", metrics.estimate_spread_m * 1e3},
+                                 {"fleet_rms_mm", metrics.fleet_rms_m * 1e3},
+                                 {"ok", metrics.ok}};
+  AddFloor(metrics.floor_rms_m, metrics.fleet_rms_m, &json);
+  return json;
 }
 
 bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hil/scenario.h"
+#include "host/floor/floor.h"
 
 namespace armada {
 
@@ -25,6 +26,7 @@ struct ArmMetrics {
   std::optional<double> settled_s;
   double rms_m = 0.0;
   double max_m = 0.0;
+  std::optional<double> floor_rms_m;  ///< unavoidable part of rms_m, where it was computed
   EstimatorRms estimator_rms;
   double torque_max_Nm = 0.0;
   int saturated_ticks = 0;
@@ -48,10 +50,13 @@ struct RunMetrics {
   std::vector<ArmMetrics> arms;
   double estimate_spread_m = 0.0;  ///< largest distance between two estimates of x in the window
   double fleet_rms_m = 0.0;
+  std::optional<double> floor_rms_m;  ///< unavoidable part of fleet_rms_m, where it was computed
   bool ok = false;
 
   /// Fills fleet_rms_m, ok and, by its error, diverged from the arms by the scenario's criterion.
   void Judge(const CriterionConfig& criterion);
+  /// Sets the fleet and its arms beside the floor of the same scenario and seed.
+  void CompareWith(const FloorResult& floor);
 };
 
 /// The schema of docs/metrics.md, SI units but for names that say millimetres.

@@ -34,7 +34,7 @@ int SimulateWithoutSubtasks(const std::string& directory) {
   if (!any_subtask) return kExitOk;
   RunMetrics metrics;
   std::string error;
-  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", &metrics,
+  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", false, &metrics,
                     &error)) {
     std::cerr << "armada report: " << error << '\n';
     return kExitFailed;

@@ -49,14 +49,26 @@ std::string BlameText(const RecordedRun& run, bool ok) {
   return text;
 }
 
+/// True where the run was measured against its floor.
+bool HasFloor(const RecordedRun& run) {
+  return run.metrics.contains("floor_rms_mm");
+}
+
+std::string FleetText(const RecordedRun& run) {
+  std::string text = "Fleet RMS " + Top(run, "fleet_rms_mm") + " mm over the window";
+  if (HasFloor(run)) {
+    text += ", " + Top(run, "over_floor") + " times the unavoidable " + Top(run, "floor_rms_mm") + " mm";
+  }
+  return text + ".";
+}
+
 std::string Verdict(const RecordedRun& run) {
   const bool ok = RequireKey(run.metrics, "ok", "the top level").get<bool>();
   const std::string how = Top(run, "mode") == "run" ? "armada run: real time, one process an arm"
                                                     : "armada sim: virtual time, one process";
   std::string html = std::string("<div class=\"verdict") + (ok ? "" : " bad") + "\"><h1>" +
                      Top(run, "scenario") + ", seed " + Top(run, "seed") + ": <b>" + (ok ? "ok" : "NOT ok") +
-                     "</b></h1><p>Fleet RMS " + Top(run, "fleet_rms_mm") + " mm over the window.</p>" +
-                     BlameText(run, ok) + "</div>\n<dl>";
+                     "</b></h1><p>" + FleetText(run) + "</p>" + BlameText(run, ok) + "</div>\n<dl>";
   const auto fact = [&](const std::string& name, const std::string& value) {
     html += "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>";
   };
@@ -69,7 +81,7 @@ std::string Verdict(const RecordedRun& run) {
   return html + "</dl>\n";
 }
 
-std::string ArmRow(const ArmRecord& arm, size_t index) {
+std::string ArmRow(const ArmRecord& arm, size_t index, bool with_floor) {
   const std::string part = "arm " + std::to_string(arm.id);
   const auto cell = [&](const char* key) {
     return "<td>" + ValueText(RequireKey(arm.metrics, key, part)) + "</td>";
@@ -83,6 +95,7 @@ std::string ArmRow(const ArmRecord& arm, size_t index) {
                      "\"></span>" + std::to_string(arm.id) + "</th><td>" + std::to_string(arm.joints) +
                      "</td>" + "<td class=\"word\">" + (arm.diverged ? "<strong>DIVERGED</strong>" : "no") +
                      "</td>" + cell("settled_s") + cell("rms_mm") + cell("max_mm");
+  if (with_floor) html += cell("floor_rms_mm") + cell("over_floor");
   for (const char* state : {"x", "v", "a"}) {
     html += "<td>" + ValueText(RequireKey(estimator, state, part + ", estimator_rms,")) + "</td>";
   }
@@ -92,14 +105,17 @@ std::string ArmRow(const ArmRecord& arm, size_t index) {
 
 std::string ArmTable(const RecordedRun& run) {
   std::string html = "<h2>Arms</h2>\n<div class=\"wide\"><table><thead><tr>";
-  for (const char* head : {"arm", "joints", "diverged", "settled<br>[s]", "RMS<br>[mm]", "max<br>[mm]",
-                           "estimator<br>RMS x<br>[m]", "estimator<br>RMS v<br>[m/s]",
-                           "estimator<br>RMS a<br>[m/s²]", "largest<br>torque<br>[N m]", "saturated<br>ticks",
-                           "parameter<br>error", "subtask", "subtask<br>RMS", "state", "faults"}) {
-    html += std::string("<th scope=\"col\">") + head + "</th>";
-  }
+  const bool with_floor = HasFloor(run);
+  std::vector<const char*> heads = {"arm",         "joints",     "diverged", "settled<br>[s]",
+                                    "RMS<br>[mm]", "max<br>[mm]"};
+  if (with_floor) heads.insert(heads.end(), {"floor<br>[mm]", "RMS over<br>floor"});
+  heads.insert(heads.end(),
+               {"estimator<br>RMS x<br>[m]", "estimator<br>RMS v<br>[m/s]", "estimator<br>RMS a<br>[m/s²]",
+                "largest<br>torque<br>[N m]", "saturated<br>ticks", "parameter<br>error", "subtask",
+                "subtask<br>RMS", "state", "faults"});
+  for (const char* head : heads) html += std::string("<th scope=\"col\">") + head + "</th>";
   html += "</tr></thead><tbody>\n";
-  for (size_t index = 0; index < run.arms.size(); ++index) html += ArmRow(run.arms[index], index);
+  for (size_t index = 0; index < run.arms.size(); ++index) html += ArmRow(run.arms[index], index, with_floor);
   return html + "</tbody></table></div>\n";
 }
 

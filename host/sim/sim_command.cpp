@@ -6,11 +6,12 @@
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
 #include "host/arm_table.h"
+#include "host/floor/floor_command.h"
 #include "host/sim/simulation.h"
 
 namespace armada {
 
-bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory,
+bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::string& directory, bool floor,
                   RunMetrics* metrics, std::string* error) {
   TraceWriter trace(directory, scenario.fleet);
   if (!trace.ok()) {
@@ -22,6 +23,7 @@ bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::stri
     *error = trace.error();
     return false;
   }
+  if (floor) metrics->CompareWith(Floor(scenario, seed));
   return WriteEffective(scenario, directory, error) &&
          WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
 }
@@ -29,11 +31,13 @@ bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::stri
 int RunSimCommand(const SimOptions& options) {
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
+  if (options.floor && !HasFloor(*scenario)) return kExitUsage;
   std::string error;
   RunMetrics metrics;
   if (options.trace.empty()) {
     metrics = Simulation(*scenario, options.seed).Run(nullptr);
-  } else if (!SimulateInto(*scenario, options.seed, options.trace, &metrics, &error)) {
+    if (options.floor) metrics.CompareWith(Floor(*scenario, options.seed));
+  } else if (!SimulateInto(*scenario, options.seed, options.trace, options.floor, &metrics, &error)) {
     std::cerr << "armada sim: " << error << '\n';
     return kExitFailed;
   }

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "firmware/app/exit_codes.h"
+#include "host/floor/floor_command.h"
 #include "host/sim/simulation.h"
 #include "host/sweep/seed_jobs.h"
 #include "host/sweep/sweep_result.h"
@@ -17,27 +18,35 @@ int Usage(const std::string& message) {
   return kExitUsage;
 }
 
-std::string Fixed(double value) {
+std::string Fixed(double value, int decimals) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3f", value);
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
 }
 
 void PrintSummary(const SweepSummary& summary) {
   std::printf(
       "arm  diverged  unsettled  rms_mm: median      95%%    99.9%%  settled_s: median      95%%      max  "
-      "worst seed\n");
+      "worst seed%s\n",
+      summary.floor_rms_mm ? "  floor_mm: median  ratio: median      95%" : "");
   for (const SweepArmSummary& arm : summary.arms) {
-    std::printf("%3d  %8lld  %9lld  %14.3f  %7.3f  %7.3f  %17.2f  %7.2f  %7.2f  %10llu\n", arm.id,
+    std::printf("%3d  %8lld  %9lld  %14.3f  %7.3f  %7.3f  %17.2f  %7.2f  %7.2f  %10llu", arm.id,
                 static_cast<long long>(arm.diverged), static_cast<long long>(arm.never_settled),
                 arm.rms_mm.median, arm.rms_mm.p95, arm.rms_mm.p999, arm.settled_s.median, arm.settled_s.p95,
                 arm.settled_s.max, static_cast<unsigned long long>(arm.rms_mm.worst_seed));
+    if (summary.floor_rms_mm)
+      std::printf("  %16.3f  %13.2f  %7.2f", arm.floor_mm.median, arm.over_floor.median, arm.over_floor.p95);
+    std::printf("\n");
   }
   std::printf("fleet RMS of all: median %.3f mm, 95%% %.3f mm, max %.3f mm (seed %llu)\n",
               summary.fleet_rms_all_mm.median, summary.fleet_rms_all_mm.p95, summary.fleet_rms_all_mm.max,
               static_cast<unsigned long long>(summary.fleet_rms_all_mm.worst_seed));
-  const std::string fleet_rms =
-      summary.fleet_rms_mm ? ", their RMS " + Fixed(*summary.fleet_rms_mm) + " mm" : std::string();
+  std::string fleet_rms;
+  if (summary.fleet_rms_mm) fleet_rms = ", their RMS " + Fixed(*summary.fleet_rms_mm, 3) + " mm";
+  if (summary.floor_rms_mm) {
+    fleet_rms += ", " + Fixed(*summary.fleet_rms_mm / *summary.floor_rms_mm, 2) + " times their floor of " +
+                 Fixed(*summary.floor_rms_mm, 3) + " mm";
+  }
   std::printf("%lld of %lld fleets ok%s, estimator RMS %.3g mm\n", static_cast<long long>(summary.ok_count),
               static_cast<long long>(summary.count), fleet_rms.c_str(), summary.estimator_rms_x_m * 1e3);
   if (!summary.failed_seeds.empty()) {
@@ -72,11 +81,14 @@ int RunSweepCommand(const SweepOptions& options) {
   }
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
+  if (options.floor && !HasFloor(*scenario)) return kExitUsage;
   std::vector<uint64_t> seeds;
   for (uint64_t seed = first + shard - 1; seed <= last; seed += shards) seeds.push_back(seed);
   std::vector<SeedResult> results(seeds.size());
   RunSeedJobs(seeds, options.jobs, [&](size_t index, uint64_t seed) {
-    results[index] = SeedResult::Of(Simulation(*scenario, seed).Run(nullptr));
+    RunMetrics metrics = Simulation(*scenario, seed).Run(nullptr);
+    if (options.floor) metrics.CompareWith(Floor(*scenario, seed));
+    results[index] = SeedResult::Of(metrics);
     return results[index].ok;
   });
   return Finish({scenario->name, options.scenario.Overrides(), std::move(results)}, options.json);

@@ -13,6 +13,7 @@ struct SweepOptions {
   std::string shard = "1/1";    ///< "I/N": every N-th seed, from the I-th
   int jobs = 0;                 ///< threads; 0: all cores
   std::string json;
+  bool floor = false;  ///< the unavoidable error of every seed, too
 };
 
 /// `armada sweep SCENARIO`: the same scenario over many seeds. Exit code: ok when every fleet is.

@@ -39,11 +39,17 @@ Json ToJson(const Distribution& distribution) {
           {"worst_seed", distribution.worst_seed}};
 }
 
+std::optional<double> FloorFromJson(const Json& json) {
+  const auto found = json.find("floor_rms_mm");
+  return found == json.end() ? std::nullopt : std::optional(found->get<double>());
+}
+
 SeedResult RunFromJson(const Json& json) {
   SeedResult run;
   run.seed = json.at("seed").get<uint64_t>();
   run.ok = json.at("ok").get<bool>();
   run.fleet_rms_mm = json.at("fleet_rms_mm").get<double>();
+  run.floor_rms_mm = FloorFromJson(json);
   for (const Json& entry : json.at("arms")) {
     SeedResult::Arm arm;
     arm.id = entry.at("id").get<int>();
@@ -52,6 +58,7 @@ SeedResult RunFromJson(const Json& json) {
     arm.rms_mm = entry.at("rms_mm").get<double>();
     arm.max_mm = entry.at("max_mm").get<double>();
     arm.estimator_x_m = entry.at("estimator_x").get<double>();
+    arm.floor_rms_mm = FloorFromJson(entry);
     run.arms.push_back(arm);
   }
   return run;
@@ -66,17 +73,28 @@ Json ToJson(const SeedResult& run) {
                     {"rms_mm", arm.rms_mm},
                     {"max_mm", arm.max_mm},
                     {"estimator_x", arm.estimator_x_m}});
+    if (arm.floor_rms_mm) arms.back()["floor_rms_mm"] = *arm.floor_rms_mm;
   }
-  return {{"seed", run.seed}, {"ok", run.ok}, {"fleet_rms_mm", run.fleet_rms_mm}, {"arms", arms}};
+  Json json = {{"seed", run.seed}, {"ok", run.ok}, {"fleet_rms_mm", run.fleet_rms_mm}};
+  if (run.floor_rms_mm) json["floor_rms_mm"] = *run.floor_rms_mm;
+  json["arms"] = arms;
+  return json;
+}
+
+bool HasFloors(const Sweep& sweep) {
+  return !sweep.runs.empty() && sweep.runs.front().floor_rms_mm.has_value();
 }
 
 }  // namespace
 
 SeedResult SeedResult::Of(const RunMetrics& metrics) {
-  SeedResult run{metrics.seed, metrics.ok, metrics.fleet_rms_m * 1e3, {}};
+  const auto in_mm = [](const std::optional<double>& m) {
+    return m ? std::optional(*m * 1e3) : std::nullopt;
+  };
+  SeedResult run{metrics.seed, metrics.ok, metrics.fleet_rms_m * 1e3, in_mm(metrics.floor_rms_m), {}};
   for (const ArmMetrics& arm : metrics.arms) {
-    run.arms.push_back(
-        {arm.id, arm.diverged, arm.settled_s, arm.rms_m * 1e3, arm.max_m * 1e3, arm.estimator_rms.x_m});
+    run.arms.push_back({arm.id, arm.diverged, arm.settled_s, arm.rms_m * 1e3, arm.max_m * 1e3,
+                        arm.estimator_rms.x_m, in_mm(arm.floor_rms_m)});
   }
   return run;
 }
@@ -85,6 +103,7 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   SweepSummary summary;
   summary.count = static_cast<int64_t>(runs.size());
   double ok_squares = 0.0;
+  double floor_squares = 0.0;
   std::vector<Sample> fleets;
   double estimator_squares = 0.0;
   int64_t estimates = 0;
@@ -93,6 +112,7 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
     if (run.ok) {
       ++summary.ok_count;
       ok_squares += run.fleet_rms_mm * run.fleet_rms_mm;
+      if (run.floor_rms_mm) floor_squares += *run.floor_rms_mm * *run.floor_rms_mm;
     } else {
       summary.failed_seeds.push_back(run.seed);
     }
@@ -103,6 +123,8 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   }
   if (summary.ok_count > 0)
     summary.fleet_rms_mm = std::sqrt(ok_squares / static_cast<double>(summary.ok_count));
+  if (floor_squares > 0.0)
+    summary.floor_rms_mm = std::sqrt(floor_squares / static_cast<double>(summary.ok_count));
   if (estimates > 0)
     summary.estimator_rms_x_m = std::sqrt(estimator_squares / static_cast<double>(estimates));
 
@@ -112,7 +134,7 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   for (size_t i = 0; i < arm_count; ++i) {
     SweepArmSummary arm;
     arm.id = runs.front().arms[i].id;
-    std::vector<Sample> rms, max, settled;
+    std::vector<Sample> rms, max, settled, floor, over_floor;
     for (const SeedResult& run : runs) {
       const SeedResult::Arm& of_run = run.arms[i];
       if (of_run.diverged) {
@@ -120,6 +142,10 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
       } else {
         rms.push_back({of_run.rms_mm, run.seed});
         max.push_back({of_run.max_mm, run.seed});
+        if (of_run.floor_rms_mm) {
+          floor.push_back({*of_run.floor_rms_mm, run.seed});
+          over_floor.push_back({of_run.rms_mm / *of_run.floor_rms_mm, run.seed});
+        }
       }
       if (of_run.settled_s) {
         settled.push_back({*of_run.settled_s, run.seed});
@@ -130,6 +156,8 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
     arm.rms_mm = DistributionOf(std::move(rms));
     arm.max_mm = DistributionOf(std::move(max));
     arm.settled_s = DistributionOf(std::move(settled));
+    arm.floor_mm = DistributionOf(std::move(floor));
+    arm.over_floor = DistributionOf(std::move(over_floor));
     summary.arms.push_back(arm);
   }
   return summary;
@@ -145,21 +173,29 @@ Json ToJson(const Sweep& sweep) {
                     {"rms_mm", ToJson(arm.rms_mm)},
                     {"max_mm", ToJson(arm.max_mm)},
                     {"settled_s", ToJson(arm.settled_s)}});
+    if (arm.floor_mm.count == 0) continue;
+    arms.back()["floor_mm"] = ToJson(arm.floor_mm);
+    arms.back()["over_floor"] = ToJson(arm.over_floor);
   }
   Json runs = Json::array();
   for (const SeedResult& run : sweep.runs) runs.push_back(ToJson(run));
-  return {{"schema", 1},
-          {"mode", "sweep"},
-          {"scenario", sweep.scenario},
-          {"set", sweep.overrides},
-          {"count", summary.count},
-          {"ok_count", summary.ok_count},
-          {"fleet_rms_mm", summary.fleet_rms_mm ? Json(*summary.fleet_rms_mm) : Json(nullptr)},
-          {"fleet_rms_all_mm", ToJson(summary.fleet_rms_all_mm)},
-          {"estimator_rms_x", summary.estimator_rms_x_m},
-          {"failed_seeds", summary.failed_seeds},
-          {"arms", arms},
-          {"runs", runs}};
+  Json json = {{"schema", 1},
+               {"mode", "sweep"},
+               {"scenario", sweep.scenario},
+               {"set", sweep.overrides},
+               {"count", summary.count},
+               {"ok_count", summary.ok_count},
+               {"fleet_rms_mm", summary.fleet_rms_mm ? Json(*summary.fleet_rms_mm) : Json(nullptr)},
+               {"fleet_rms_all_mm", ToJson(summary.fleet_rms_all_mm)}};
+  if (summary.floor_rms_mm) {
+    json["floor_rms_mm"] = *summary.floor_rms_mm;
+    json["over_floor"] = *summary.fleet_rms_mm / *summary.floor_rms_mm;
+  }
+  json["estimator_rms_x"] = summary.estimator_rms_x_m;
+  json["failed_seeds"] = summary.failed_seeds;
+  json["arms"] = arms;
+  json["runs"] = runs;
+  return json;
 }
 
 std::optional<Sweep> SweepFromJson(const Json& json, std::string* error) {
@@ -183,6 +219,10 @@ std::optional<Sweep> Merge(const std::vector<Sweep>& shards, std::string* error)
     if (shard.scenario != merged.scenario || shard.overrides != merged.overrides) {
       *error =
           "the files are of different scenarios or settings: " + merged.scenario + " and " + shard.scenario;
+      return std::nullopt;
+    }
+    if (HasFloors(shard) != HasFloors(shards.front())) {
+      *error = "some of the files have floors, some do not";
       return std::nullopt;
     }
     merged.runs.insert(merged.runs.end(), shard.runs.begin(), shard.runs.end());

@@ -18,10 +18,12 @@ struct SeedResult {
     double rms_mm = 0.0;
     double max_mm = 0.0;
     double estimator_x_m = 0.0;
+    std::optional<double> floor_rms_mm;  ///< with `armada sweep --floor`
   };
   uint64_t seed = 0;
   bool ok = false;
   double fleet_rms_mm = 0.0;
+  std::optional<double> floor_rms_mm;  ///< of the fleet, as of its arms
   std::vector<Arm> arms;
 
   static SeedResult Of(const RunMetrics& metrics);
@@ -44,15 +46,18 @@ struct SweepArmSummary {
   Distribution rms_mm;  ///< of the seeds in which the arm did not diverge
   Distribution max_mm;
   Distribution settled_s;  ///< of those in which it settled
+  Distribution floor_mm;   ///< of those that have a floor and in which the arm did not diverge
+  Distribution over_floor;
 };
 
 struct SweepSummary {
   int64_t count = 0;
   int64_t ok_count = 0;
   std::optional<double>
-      fleet_rms_mm;                ///< root of the mean square over the fleets that are ok; none without one
-  Distribution fleet_rms_all_mm;   ///< fleet RMS of every fleet, ok or not
-  double estimator_rms_x_m = 0.0;  ///< the same over all fleets and arms
+      fleet_rms_mm;  ///< root of the mean square over the fleets that are ok; none without one
+  std::optional<double> floor_rms_mm;  ///< of the floors of those fleets
+  Distribution fleet_rms_all_mm;       ///< fleet RMS of every fleet, ok or not
+  double estimator_rms_x_m = 0.0;      ///< the same over all fleets and arms
   std::vector<SweepArmSummary> arms;
   std::vector<uint64_t> failed_seeds;
 };
@@ -69,7 +74,8 @@ nlohmann::ordered_json ToJson(const Sweep& sweep);
 /// Reads what ToJson wrote. Nothing with *error set when it is something else.
 std::optional<Sweep> SweepFromJson(const nlohmann::ordered_json& json, std::string* error);
 
-/// One sweep of several shards. Nothing with *error set when they are of different scenarios or share a seed.
+/// One sweep of several shards. Nothing with *error set when they are of different scenarios or settings,
+/// with and without floors, or share a seed.
 std::optional<Sweep> Merge(const std::vector<Sweep>& shards, std::string* error);
 
 }  // namespace armada

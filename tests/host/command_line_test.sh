@@ -25,6 +25,12 @@ expect 78 'set.*no_such_key|no_such_key' "$armada" sim "$scenario" --set no_such
 expect 78 '[Ll]eader|reach' "$armada" sim "$scenario" --set 'graph=[{pins=[1],edges=[]}]'
 expect 2 'no such arm' "$bin/armada-arm" "$fleet" --arm 99
 expect 2 'seeds 9:1' "$armada" sweep "$scenario" --seeds 9:1
+expect 2 'seeds 9:1' "$armada" floor "$scenario" --seeds 9:1
+expect 2 'excludes' "$armada" floor "$scenario" --seed 1 --seeds 1:2
+for command in floor 'sim --floor' 'sweep --floor'; do
+  # shellcheck disable=SC2086  # two words
+  expect 2 'leaderless.toml has no leader' "$armada" $command "$source/hil/scenarios/leaderless.toml"
+done
 expect 2 'shard 3/2' "$armada" sweep "$scenario" --shard 3/2
 expect 2 'there are udp' "$armada" run "$scenario" --bus nonsense
 expect 2 'unknown|not expected|required' "$armada" fly
@@ -38,17 +44,26 @@ expect 1 '^NOT ok' "$armada" sim "$source/hil/scenarios/benign.toml" --seconds 3
 
 # check, sim with a trace, report, sweep in shards.
 expect 0 'A1|reach' "$armada" check "$scenario"
-expect 0 '^ok: fleet RMS' "$armada" sim "$scenario" --seconds 6 --set window_start_s=5.0 --trace "$work/trace" \
-  --json "$work/sim.json"
+expect 0 '^ok: fleet RMS .* times the floor of' "$armada" sim "$scenario" --seconds 6 --set window_start_s=5.0 --floor \
+  --trace "$work/trace" --json "$work/sim.json"
 cmp -s "$work/sim.json" "$work/trace/metrics.json" || fail "--json and --trace write different metrics"
 expect 0 'report.html' "$armada" report "$work/trace"
 [ -s "$work/trace/report.html" ] || fail "no page"
+grep -q 'times the unavoidable' "$work/trace/report.html" || fail "the page does not tell the floor"
 short=(--seconds 6 --set window_start_s=5.0)
 "$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --jobs 1 --json "$work/whole.json" >/dev/null || fail "sweep"
 "$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --shard 1/2 --json "$work/s1.json" >/dev/null || fail "shard 1/2"
 "$armada" sweep "$scenario" "${short[@]}" --seeds 1:4 --shard 2/2 --json "$work/s2.json" >/dev/null || fail "shard 2/2"
 "$armada" sweep merge "$work/s1.json" "$work/s2.json" --json "$work/merged.json" >/dev/null || fail "merge"
 cmp -s "$work/whole.json" "$work/merged.json" || fail "merged shards differ from the whole sweep"
+expect 0 ' times their floor of ' "$armada" sweep "$scenario" "${short[@]}" --seeds 1:2 --floor
+
+# The floor: the same bytes on any number of threads.
+for jobs in 1 2; do
+  expect 0 '^floor: fleet RMS .* seeds 1 to 3' "$armada" floor "$scenario" "${short[@]}" --seeds 1:3 --jobs $jobs \
+    --json "$work/floor_$jobs.json"
+done
+cmp -s "$work/floor_1.json" "$work/floor_2.json" || fail "the floor depends on --jobs"
 
 # Processes in real time. This checks that they work together, not how late this machine is: under a sanitizer or load
 # the fleet may miss its criterion (exit 1), never its results.

@@ -6,13 +6,14 @@ namespace armada {
 namespace {
 
 SeedResult ResultOf(uint64_t seed, double rms_mm, bool ok) {
-  SeedResult result{seed, ok, rms_mm, {}};
+  SeedResult result{.seed = seed, .ok = ok, .fleet_rms_mm = rms_mm, .floor_rms_mm = std::nullopt, .arms = {}};
   result.arms.push_back({.id = 1,
                          .diverged = !ok,
                          .settled_s = std::nullopt,
                          .rms_mm = rms_mm,
                          .max_mm = 3.0 * rms_mm,
-                         .estimator_x_m = 1e-5});
+                         .estimator_x_m = 1e-5,
+                         .floor_rms_mm = std::nullopt});
   if (ok) result.arms[0].settled_s = 0.1 * static_cast<double>(seed);
   return result;
 }
@@ -37,6 +38,40 @@ TEST(Sweep, ReadsBackWhatItWrote) {
   const auto read = SweepFromJson(ToJson(sweep), &error);
   ASSERT_TRUE(read.has_value()) << error;
   EXPECT_EQ(ToJson(*read).dump(), ToJson(sweep).dump());
+}
+
+Sweep WithFloors(Sweep sweep, double floor_mm) {
+  for (SeedResult& run : sweep.runs) {
+    run.floor_rms_mm = floor_mm;
+    run.arms[0].floor_rms_mm = floor_mm;
+  }
+  return sweep;
+}
+
+TEST(Sweep, WithFloorsMergesToTheWholeByteForByte) {
+  std::string error;
+  const auto first = SweepFromJson(ToJson(WithFloors(SweepOf(1, 10, 2), 0.4)), &error);
+  const auto second = SweepFromJson(ToJson(WithFloors(SweepOf(2, 10, 2), 0.4)), &error);
+  ASSERT_TRUE(first.has_value() && second.has_value()) << error;
+  const auto merged = Merge({*first, *second}, &error);
+  ASSERT_TRUE(merged.has_value()) << error;
+  EXPECT_EQ(ToJson(*merged).dump(), ToJson(WithFloors(SweepOf(1, 10, 1), 0.4)).dump());
+  EXPECT_FALSE(Merge({*first, SweepOf(2, 10, 2)}, &error).has_value());
+  EXPECT_EQ(error, "some of the files have floors, some do not");
+}
+
+TEST(Sweep, SummaryMeasuresAgainstTheFloorsOfTheFleetsThatAreOk) {
+  Sweep sweep = SweepOf(1, 9, 1);
+  sweep.runs.push_back(ResultOf(10, 900.0, false));
+  const SweepSummary summary = Summarize(WithFloors(sweep, 0.25).runs);
+  ASSERT_TRUE(summary.floor_rms_mm.has_value());
+  EXPECT_NEAR(*summary.floor_rms_mm, 0.25, 1e-12);
+  EXPECT_EQ(summary.arms[0].over_floor.count, 9);
+  EXPECT_NEAR(summary.arms[0].over_floor.max, 0.509 / 0.25, 1e-12);
+  EXPECT_EQ(summary.arms[0].over_floor.worst_seed, 9u);
+  const auto json = ToJson(WithFloors(sweep, 0.25));
+  EXPECT_NEAR(json.at("over_floor").get<double>(), *summary.fleet_rms_mm / 0.25, 1e-12);
+  EXPECT_FALSE(ToJson(sweep).contains("floor_rms_mm")) << "without --floor there is none";
 }
 
 TEST(Sweep, RefusesASeedThatIsInTwoShards) {
