@@ -5,19 +5,23 @@
 #include "hil/random.h"
 
 namespace armada {
-JointVector BentElbow(const PlanarArm& arm, const TaskVector& x_m) {
+JointVector BentElbow(const PlanarArm& arm) {
   JointVector q = JointVector::Constant(arm.dof(), 1.2);
   q[0] = 0.3 - arm.config().base_orientation_rad;
+  return q;
+}
+
+JointVector ReachFrom(const PlanarArm& arm, JointVector q_rad, const TaskVector& x_m) {
   for (int iteration = 0; iteration < 300; ++iteration) {
-    const PlanarArm::Posture at = arm.At(q);
+    const PlanarArm::Posture at = arm.At(q_rad);
     const JacobianMatrix J = arm.Jacobian(at);
     Eigen::Matrix2d JJt = J * J.transpose();
     JJt.diagonal().array() += 1e-3;
     const Eigen::Vector2d error = x_m - arm.Position(at);
     const Eigen::Vector2d weighted = JJt.llt().solve(error);
-    q += J.transpose() * weighted;
+    q_rad += J.transpose() * weighted;
   }
-  return q;
+  return q_rad;
 }
 
 ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader) {
@@ -43,7 +47,7 @@ ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, 
   if (config.kind == StartKind::kNearLeader) {
     TaskVector x = zeta.x_m;
     for (double& x_c : x) x_c += draw(-config.near_leader_m, config.near_leader_m);
-    const JointVector q = BentElbow(arm, x);
+    const JointVector q = ReachFrom(arm, BentElbow(arm), x);
     std::copy(q.data(), q.data() + q.size(), start.q_rad.begin());
   }
   for (TaskVector* part : {&zeta.x_m, &zeta.v_m_s, &zeta.a_m_s2}) {

@@ -13,9 +13,12 @@ struct ArmStart {
   ArmInitialState controller;
 };
 
-/// Joint angles that put the end effector at `x_m` (as near as the arm reaches), by damped least squares from
-/// a bent elbow: always the same of the arm's postures.
-JointVector BentElbow(const PlanarArm& arm, const TaskVector& x_m);
+/// Joint angles of an arm with its elbows bent, the tip somewhere.
+JointVector BentElbow(const PlanarArm& arm);
+
+/// Joint angles that put the end effector at `x_m`, or as near as the arm reaches, by damped least squares
+/// from `q_rad`: a posture like that one.
+JointVector ReachFrom(const PlanarArm& arm, JointVector q_rad, const TaskVector& x_m);
 
 /// The start of arm `index` in run `seed`. `leader` may be null in a leaderless scenario.
 ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader);

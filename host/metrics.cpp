@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "firmware/app/config/enum_names.h"
+#include "host/floor/floor.h"
 
 namespace armada {
 namespace {
@@ -61,7 +62,10 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
     ok = false;
 }
 
-void RunMetrics::CompareWith(const FloorResult& floor) {
+void RunMetrics::CompareWithFloor(const ScenarioConfig& run) {
+  std::vector<JointVector> postures_rad;
+  for (const ArmMetrics& arm : arms) postures_rad.push_back(arm.floor_posture_rad);
+  const FloorResult floor = Floor(run, seed, postures_rad);
   floor_rms_m = floor.fleet_rms_m;
   for (size_t i = 0; i < arms.size(); ++i) arms[i].floor_rms_m = floor.arms[i].rms_m;
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "hil/scenario.h"
-#include "host/floor/floor.h"
 
 namespace armada {
 
@@ -33,6 +32,7 @@ struct ArmMetrics {
   double parameter_error = 0.0;             ///< |theta_hat - theta| / |theta| at the end
   std::optional<double> subtask_rms_rad_s;  ///< RMS of |e_s| in the window; none without a subtask
   std::optional<double> posture_rms_rad;    ///< RMS distance from the posture's goal in the window
+  JointVector floor_posture_rad;            ///< joints at the tick at which the arm's floor begins
   std::string state = "INIT";
   std::vector<std::string> faults;
 };
@@ -55,8 +55,9 @@ struct RunMetrics {
 
   /// Fills fleet_rms_m, ok and, by its error, diverged from the arms by the scenario's criterion.
   void Judge(const CriterionConfig& criterion);
-  /// Sets the fleet and its arms beside the floor of the same scenario and seed.
-  void CompareWith(const FloorResult& floor);
+  /// Sets fleet and arms beside the floor (host/floor/floor.h) of the scenario that this is the run of, in
+  /// the arms' postures.
+  void CompareWithFloor(const ScenarioConfig& run);
 };
 
 /// The schema of docs/metrics.md, SI units but for names that say millimetres.

@@ -59,12 +59,13 @@ ExactFilterConfig FilterConfig(const ScenarioConfig& scenario, const ArmEntry& e
 /// One arm from shortly before the window to the run's end.
 class ArmRun {
  public:
-  ArmRun(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath& leader);
+  ArmRun(const ScenarioConfig& scenario, size_t index, uint64_t seed, const JointVector& posture_rad,
+         const LeaderPath& leader);
   ArmFloor Run();
 
  private:
   double TimeOf(int64_t k) const { return static_cast<double>(k) * period_s_; }
-  MovingArm Start(const DisturbanceConfig& disturbance) const;
+  MovingArm Start(const DisturbanceConfig& disturbance, const JointVector& posture_rad) const;
   JointReadings Read();
   void Tick(int64_t k);
 
@@ -82,16 +83,17 @@ class ArmRun {
   TrackingRecord record_;
 };
 
-ArmRun::ArmRun(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath& leader)
+ArmRun::ArmRun(const ScenarioConfig& scenario, size_t index, uint64_t seed, const JointVector& posture_rad,
+               const LeaderPath& leader)
     : scenario_(scenario),
       entry_(scenario.fleet.arms[index]),
       leader_(leader),
       seed_(seed),
       period_s_(scenario.fleet.timing.period_s),
-      first_tick_(std::max<int64_t>(0, std::llround((scenario.window_start_s - kSettling_s) / period_s_))),
+      first_tick_(FloorStartTick(scenario)),
       tracking_(entry_.arm, entry_.control.subtask, leader, period_s_),
-      truth_(Start(scenario.disturbance)),
-      filter_(FilterConfig(scenario, entry_), Start(Expected(scenario.disturbance))),
+      truth_(Start(scenario.disturbance, posture_rad)),
+      filter_(FilterConfig(scenario, entry_), Start(Expected(scenario.disturbance), posture_rad)),
       torques_(scenario.drive.latency_s),
       record_(scenario) {
   const EmulatedDriveConfig& drive = scenario.drive;
@@ -103,10 +105,10 @@ ArmRun::ArmRun(const ScenarioConfig& scenario, size_t index, uint64_t seed, cons
 }
 
 // On the leader, and as fast.
-MovingArm ArmRun::Start(const DisturbanceConfig& disturbance) const {
+MovingArm ArmRun::Start(const DisturbanceConfig& disturbance, const JointVector& posture_rad) const {
   const double t_s = TimeOf(first_tick_);
   const Zeta zeta = leader_.At(t_s);
-  const JointVector q = BentElbow(PlanarArm(entry_.arm), zeta.x_m);
+  const JointVector q = ReachFrom(PlanarArm(entry_.arm), posture_rad, zeta.x_m);
   const JointVector dq = tracking_.JointVelocity(q, zeta.v_m_s);
   MovingArm arm{PlanarPlant(entry_.arm), HeldDisturbance(Disturbance(disturbance, seed_, entry_.id), leader_),
                 t_s};
@@ -162,11 +164,23 @@ double FleetRms_m(const std::vector<ArmFloor>& arms) {
 
 }  // namespace
 
+int64_t FloorStartTick(const ScenarioConfig& scenario) {
+  const double start_s = std::max(0.0, scenario.window_start_s - kSettling_s);
+  return std::llround(start_s / scenario.fleet.timing.period_s);
+}
+
 FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed) {
+  std::vector<JointVector> postures_rad;
+  for (const ArmEntry& entry : scenario.fleet.arms) postures_rad.push_back(BentElbow(PlanarArm(entry.arm)));
+  return Floor(scenario, seed, postures_rad);
+}
+
+FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed,
+                  const std::vector<JointVector>& postures_rad) {
   const LeaderPath leader(scenario.leader);
   FloorResult floor;
   for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
-    floor.arms.push_back(ArmRun(scenario, i, seed, leader).Run());
+    floor.arms.push_back(ArmRun(scenario, i, seed, postures_rad[i], leader).Run());
   }
   floor.fleet_rms_m = FleetRms_m(floor.arms);
   return floor;

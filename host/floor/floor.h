@@ -27,6 +27,15 @@ struct FloorResult {
 /// @pre the scenario has a leader.
 FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed);
 
+/// The same with each arm in a posture like the one given: a disturbance's effect depends on it, and spare
+/// joints, or where they cannot tell, the start, decide it. `postures_rad` one an arm, of the tick at which
+/// the floor begins.
+FloorResult Floor(const ScenarioConfig& scenario, uint64_t seed,
+                  const std::vector<JointVector>& postures_rad);
+
+/// Control tick at which the floor of a scenario begins, some time before the window.
+int64_t FloorStartTick(const ScenarioConfig& scenario);
+
 /// Of several seeds together: the root of the mean of each RMS squared, the largest of each maximum. @pre one
 /// or more, of one fleet.
 FloorResult Together(const std::vector<FloorResult>& floors);

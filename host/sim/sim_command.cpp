@@ -23,7 +23,7 @@ bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::stri
     *error = trace.error();
     return false;
   }
-  if (floor) metrics->CompareWith(Floor(scenario, seed));
+  if (floor) metrics->CompareWithFloor(scenario);
   return WriteEffective(scenario, directory, error) &&
          WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
 }
@@ -36,7 +36,7 @@ int RunSimCommand(const SimOptions& options) {
   RunMetrics metrics;
   if (options.trace.empty()) {
     metrics = Simulation(*scenario, options.seed).Run(nullptr);
-    if (options.floor) metrics.CompareWith(Floor(*scenario, options.seed));
+    if (options.floor) metrics.CompareWithFloor(*scenario);
   } else if (!SimulateInto(*scenario, options.seed, options.trace, options.floor, &metrics, &error)) {
     std::cerr << "armada sim: " << error << '\n';
     return kExitFailed;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/floor/floor.h"
+
 namespace armada {
 namespace {
 
@@ -17,6 +19,10 @@ TaskVector TipPosition(const EmulatedArm& bench) {
   TaskVector x(PlanarArm::kTaskDim);
   x << tip.x_m[0], tip.x_m[1];
   return x;
+}
+
+JointVector JointsOf(const EmulatedArm& bench) {
+  return Eigen::Map<const JointVector>(bench.plant().q_rad.data(), bench.plant().dof());
 }
 
 double Rms(double sum_squares, int64_t count) {
@@ -138,6 +144,9 @@ TaskVector Simulation::Target(double t_s) const {
 
 void Simulation::Observe(int64_t k) {
   const double t_s = TimeOf(k);
+  if (k == FloorStartTick(scenario_)) {
+    for (Arm& arm : arms_) arm.floor_posture_rad = JointsOf(arm.bench);
+  }
   if (t_s < scenario_.window_start_s) return;
   // After Step the estimates are valid at the end of the tick.
   const Zeta truth = leader_ ? leader_->At(TimeOf(k + 1))
@@ -174,7 +183,7 @@ void Simulation::Trace(int64_t k, TraceWriter* trace) {
     const PlanarPlant::Tip tip = plant.EndEffector();
     TraceRow row;
     row.t_s = t_s;
-    row.q_rad = Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
+    row.q_rad = JointsOf(arm.bench);
     row.dq_rad_s = Eigen::Map<const Eigen::VectorXd>(plant.dq_rad_s.data(), plant.dof());
     row.tau_Nm = status.tau_Nm;
     row.x_m = TipPosition(arm.bench);
@@ -234,6 +243,7 @@ RunMetrics Simulation::Result() const {
       result.subtask_rms_rad_s = Rms(arm.subtask_squares, arm.window_ticks);
     if (result.subtask == SubtaskKind::kPosture)
       result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
+    result.floor_posture_rad = arm.floor_posture_rad;
     result.state = NameOf(arm.node.state());
     if (arm.node.fault() != FaultCause::kNone) result.faults.emplace_back(NameOf(arm.node.fault()));
     metrics.arms.push_back(std::move(result));

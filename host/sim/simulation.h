@@ -32,6 +32,7 @@ class Simulation {
     double posture_squares = 0.0;
     int64_t window_ticks = 0;
     double torque_max_Nm = 0.0;
+    JointVector floor_posture_rad{};
   };
 
   void BringUp();

@@ -87,7 +87,7 @@ int RunSweepCommand(const SweepOptions& options) {
   std::vector<SeedResult> results(seeds.size());
   RunSeedJobs(seeds, options.jobs, [&](size_t index, uint64_t seed) {
     RunMetrics metrics = Simulation(*scenario, seed).Run(nullptr);
-    if (options.floor) metrics.CompareWith(Floor(*scenario, seed));
+    if (options.floor) metrics.CompareWithFloor(*scenario);
     results[index] = SeedResult::Of(metrics);
     return results[index].ok;
   });
