@@ -34,8 +34,8 @@ int SimulateWithoutSubtasks(const std::string& directory) {
   if (!any_subtask) return kExitOk;
   RunMetrics metrics;
   std::string error;
-  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", false, &metrics,
-                    &error)) {
+  if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", false,
+                    &metrics, &error)) {
     std::cerr << "armada report: " << error << '\n';
     return kExitFailed;
   }

@@ -7,8 +7,8 @@ namespace armada {
 namespace {
 
 // An element of (q, dq, d) of an arm, i from 0 to 3 n - 1.
-double& Element(MovingArm* arm, int i) {
-  const int n = arm->plant.dof();
+double& Element(MovingArm* arm, Eigen::Index i) {
+  const Eigen::Index n = arm->plant.dof();
   const auto joint = static_cast<size_t>(i % n);
   if (i < n) return arm->plant.q_rad[joint];
   if (i < 2 * n) return arm->plant.dq_rad_s[joint];
@@ -20,7 +20,7 @@ double& Element(MovingArm* arm, int i) {
 ExactFilter::ExactFilter(const ExactFilterConfig& config, const MovingArm& start)
     : config_(config), dof_(start.plant.dof()), belief_(start) {
   measurement_variance_.resize(2 * dof_);
-  for (int i = 0; i < dof_; ++i) {
+  for (Eigen::Index i = 0; i < dof_; ++i) {
     measurement_variance_[i] = std::pow(config_.q_deviation_rad[static_cast<size_t>(i)], 2);
     measurement_variance_[dof_ + i] = std::pow(config_.dq_deviation_rad_s[static_cast<size_t>(i)], 2);
   }
@@ -31,7 +31,7 @@ ExactFilter::ExactFilter(const ExactFilterConfig& config, const MovingArm& start
 // One number after the other: their noises are independent, and nothing has to be inverted.
 void ExactFilter::Correct(const JointReadings& readings) {
   Vector correction = Vector::Zero(3 * dof_);
-  for (int i = 0; i < 2 * dof_; ++i) {
+  for (Eigen::Index i = 0; i < 2 * dof_; ++i) {
     const auto joint = static_cast<size_t>(i % dof_);
     const double measured = i < dof_ ? readings.q_rad[joint] : readings.dq_rad_s[joint];
     const double innovation = measured - (Element(&belief_, i) + correction[i]);
@@ -40,7 +40,7 @@ void ExactFilter::Correct(const JointReadings& readings) {
     correction += gain * innovation;
     P_ -= variance * gain * gain.transpose();
   }
-  for (int i = 0; i < 3 * dof_; ++i) Element(&belief_, i) += correction[i];
+  for (Eigen::Index i = 0; i < 3 * dof_; ++i) Element(&belief_, i) += correction[i];
 }
 
 void ExactFilter::AdvanceTo(double end_s, const DelayedTorques& torques, double step_s) {
@@ -67,7 +67,7 @@ void ExactFilter::RenewDeviation() {
 
 ExactFilter::Matrix ExactFilter::Sensitivity(double end_s, const DelayedTorques& torques) const {
   constexpr double kStep = 1e-4;  // rad, rad/s, N m
-  const auto moved = [&](int element, double by) {
+  const auto moved = [&](Eigen::Index element, double by) {
     MovingArm arm = belief_;
     if (by != 0.0) Element(&arm, element) += by;
     arm.AdvanceTo(end_s, torques, kSearchStep_s);
@@ -75,9 +75,9 @@ ExactFilter::Matrix ExactFilter::Sensitivity(double end_s, const DelayedTorques&
   };
   MovingArm reference = moved(0, 0.0);
   Matrix F = Matrix::Identity(3 * dof_, 3 * dof_);
-  for (int column = 0; column < 3 * dof_; ++column) {
+  for (Eigen::Index column = 0; column < 3 * dof_; ++column) {
     MovingArm arm = moved(column, kStep);
-    for (int row = 0; row < 2 * dof_; ++row) {
+    for (Eigen::Index row = 0; row < 2 * dof_; ++row) {
       F(row, column) = (Element(&arm, row) - Element(&reference, row)) / kStep;
     }
   }

@@ -41,7 +41,7 @@ class ExactFilter {
   Matrix Sensitivity(double end_s, const DelayedTorques& torques) const;
 
   ExactFilterConfig config_;
-  int dof_;
+  Eigen::Index dof_;
   MovingArm belief_;
   Vector measurement_variance_;  ///< 2 n
   Matrix P_;                     ///< covariance of (q, dq, d), 3 n

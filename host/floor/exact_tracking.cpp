@@ -45,7 +45,7 @@ PlanarPlant::Joints ExactTracking::Torque(const MovingArm& arm) {
 
   const JointMatrix H = arm_.Inertia(at, theta_);
   constexpr int kIterations = 8;
-  constexpr double kTolerance_rad_s = 1e-7;
+  constexpr double kTolerance_rad_s = 1e-6;
   for (int i = 0; i < kIterations; ++i) {
     MovingArm end = arm;
     end.AdvanceTo(end_s, tau_Nm_, kSearchStep_s);
