@@ -15,9 +15,10 @@ JointVector ReachFrom(const PlanarArm& arm, JointVector q_rad, const TaskVector&
   for (int iteration = 0; iteration < 300; ++iteration) {
     const PlanarArm::Posture at = arm.At(q_rad);
     const JacobianMatrix J = arm.Jacobian(at);
-    Eigen::Matrix2d JJt = J * J.transpose();
-    JJt.diagonal().array() += 1e-3;
     const Eigen::Vector2d error = x_m - arm.Position(at);
+    // Damped the more the farther it is off: without that it jumps to and fro over singular postures.
+    Eigen::Matrix2d JJt = J * J.transpose();
+    JJt.diagonal().array() += 1e-3 + error.squaredNorm();
     const Eigen::Vector2d weighted = JJt.llt().solve(error);
     q_rad += J.transpose() * weighted;
   }

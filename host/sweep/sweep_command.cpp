@@ -28,13 +28,13 @@ void PrintSummary(const SweepSummary& summary) {
   std::printf(
       "arm  diverged  unsettled  rms_mm: median      95%%    99.9%%  settled_s: median      95%%      max  "
       "worst seed%s\n",
-      summary.floor_rms_mm ? "  floor_mm: median  ratio: median      95%" : "");
+      summary.has_floors ? "  floor_mm: median  ratio: median      95%" : "");
   for (const SweepArmSummary& arm : summary.arms) {
     std::printf("%3d  %8lld  %9lld  %14.3f  %7.3f  %7.3f  %17.2f  %7.2f  %7.2f  %10llu", arm.id,
                 static_cast<long long>(arm.diverged), static_cast<long long>(arm.never_settled),
                 arm.rms_mm.median, arm.rms_mm.p95, arm.rms_mm.p999, arm.settled_s.median, arm.settled_s.p95,
                 arm.settled_s.max, static_cast<unsigned long long>(arm.rms_mm.worst_seed));
-    if (summary.floor_rms_mm)
+    if (summary.has_floors)
       std::printf("  %16.3f  %13.2f  %7.2f", arm.floor_mm.median, arm.over_floor.median, arm.over_floor.p95);
     std::printf("\n");
   }

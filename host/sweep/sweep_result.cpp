@@ -81,8 +81,8 @@ Json ToJson(const SeedResult& run) {
   return json;
 }
 
-bool HasFloors(const Sweep& sweep) {
-  return !sweep.runs.empty() && sweep.runs.front().floor_rms_mm.has_value();
+bool HaveFloors(const std::vector<SeedResult>& runs) {
+  return !runs.empty() && runs.front().floor_rms_mm.has_value();
 }
 
 }  // namespace
@@ -102,6 +102,7 @@ SeedResult SeedResult::Of(const RunMetrics& metrics) {
 SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   SweepSummary summary;
   summary.count = static_cast<int64_t>(runs.size());
+  summary.has_floors = HaveFloors(runs);
   double ok_squares = 0.0;
   double floor_squares = 0.0;
   std::vector<Sample> fleets;
@@ -123,7 +124,7 @@ SweepSummary Summarize(const std::vector<SeedResult>& runs) {
   }
   if (summary.ok_count > 0)
     summary.fleet_rms_mm = std::sqrt(ok_squares / static_cast<double>(summary.ok_count));
-  if (floor_squares > 0.0)
+  if (summary.has_floors && summary.ok_count > 0)
     summary.floor_rms_mm = std::sqrt(floor_squares / static_cast<double>(summary.ok_count));
   if (estimates > 0)
     summary.estimator_rms_x_m = std::sqrt(estimator_squares / static_cast<double>(estimates));
@@ -173,7 +174,7 @@ Json ToJson(const Sweep& sweep) {
                     {"rms_mm", ToJson(arm.rms_mm)},
                     {"max_mm", ToJson(arm.max_mm)},
                     {"settled_s", ToJson(arm.settled_s)}});
-    if (arm.floor_mm.count == 0) continue;
+    if (!summary.has_floors) continue;
     arms.back()["floor_mm"] = ToJson(arm.floor_mm);
     arms.back()["over_floor"] = ToJson(arm.over_floor);
   }
@@ -221,11 +222,13 @@ std::optional<Sweep> Merge(const std::vector<Sweep>& shards, std::string* error)
           "the files are of different scenarios or settings: " + merged.scenario + " and " + shard.scenario;
       return std::nullopt;
     }
-    if (HasFloors(shard) != HasFloors(shards.front())) {
-      *error = "some of the files have floors, some do not";
-      return std::nullopt;
-    }
     merged.runs.insert(merged.runs.end(), shard.runs.begin(), shard.runs.end());
+  }
+  if (std::any_of(merged.runs.begin(), merged.runs.end(), [&](const SeedResult& run) {
+        return run.floor_rms_mm.has_value() != HaveFloors(merged.runs);
+      })) {
+    *error = "some of the files have floors, some do not";
+    return std::nullopt;
   }
   std::sort(merged.runs.begin(), merged.runs.end(),
             [](const SeedResult& a, const SeedResult& b) { return a.seed < b.seed; });

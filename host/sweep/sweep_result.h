@@ -53,6 +53,7 @@ struct SweepArmSummary {
 struct SweepSummary {
   int64_t count = 0;
   int64_t ok_count = 0;
+  bool has_floors = false;  ///< of `armada sweep --floor`
   std::optional<double>
       fleet_rms_mm;  ///< root of the mean square over the fleets that are ok; none without one
   std::optional<double> floor_rms_mm;  ///< of the floors of those fleets

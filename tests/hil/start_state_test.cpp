@@ -90,5 +90,21 @@ TEST(StartState, NearLeaderIsAtRestWithTheEndEffectorNearTheLeader) {
   }
 }
 
+TEST(ReachFrom, FindsThePointFromWhateverPosture) {
+  const ScenarioConfig scenario = PaperScenario(StartKind::kBox);
+  const LeaderPath leader(scenario.leader);
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    for (size_t i = 0; i < 7; ++i) {
+      const PlanarArm arm(scenario.fleet.arms[i].arm);
+      const ArmStart start = DrawStart(scenario, i, seed, &leader);
+      const TaskVector x = leader.At(0.01 * static_cast<double>(seed)).x_m;
+      const JointVector q = ReachFrom(arm, Eigen::Map<const JointVector>(start.q_rad.data(), arm.dof()), x);
+      EXPECT_NEAR((arm.Position(arm.At(q)) - x).norm(), 0.0, 1e-6) << "arm " << i + 1 << ", seed " << seed;
+      // Already there, it stays.
+      EXPECT_LT((ReachFrom(arm, q, x) - q).norm(), 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armada

@@ -53,7 +53,8 @@ TEST(Sweep, WithFloorsMergesToTheWholeByteForByte) {
   const auto first = SweepFromJson(ToJson(WithFloors(SweepOf(1, 10, 2), 0.4)), &error);
   const auto second = SweepFromJson(ToJson(WithFloors(SweepOf(2, 10, 2), 0.4)), &error);
   ASSERT_TRUE(first.has_value() && second.has_value()) << error;
-  const auto merged = Merge({*first, *second}, &error);
+  const Sweep without_seeds{"paper", {}, {}};
+  const auto merged = Merge({without_seeds, *first, *second}, &error);
   ASSERT_TRUE(merged.has_value()) << error;
   EXPECT_EQ(ToJson(*merged).dump(), ToJson(WithFloors(SweepOf(1, 10, 1), 0.4)).dump());
   EXPECT_FALSE(Merge({*first, SweepOf(2, 10, 2)}, &error).has_value());
