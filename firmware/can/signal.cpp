@@ -1,5 +1,6 @@
 #include "firmware/can/signal.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -19,23 +20,36 @@ constexpr unsigned PlaceOf(const CanSignal& signal, unsigned i) {
   return place / 8u * 8u + (7u - place % 8u);
 }
 
+// From one byte of the payload to the next: the signal's bits from `i` up that lie in one byte.
+struct Piece {
+  unsigned byte, shift, bits;
+};
+
+constexpr Piece PieceOf(const CanSignal& signal, unsigned i) {
+  const unsigned place = PlaceOf(signal, i);
+  return {place / 8, place % 8, std::min(8 - place % 8, signal.bits - i)};
+}
+
 }  // namespace
 
 uint32_t GetRaw(const CanFrame& frame, const CanSignal& signal) {
   uint32_t raw = 0;
-  for (unsigned i = 0; i < signal.bits; ++i) {
-    const unsigned place = PlaceOf(signal, i);
-    raw |= (frame.data[place / 8] >> place % 8 & 1u) << i;
+  for (unsigned i = 0; i < signal.bits;) {
+    const Piece piece = PieceOf(signal, i);
+    const unsigned mask = (1u << piece.bits) - 1;
+    raw |= (frame.data[piece.byte] >> piece.shift & mask) << i;
+    i += piece.bits;
   }
   return raw;
 }
 
 void PutRaw(const CanSignal& signal, uint32_t raw, CanFrame* frame) {
-  for (unsigned i = 0; i < signal.bits; ++i) {
-    const unsigned place = PlaceOf(signal, i);
-    uint8_t& byte = frame->data[place / 8];
-    const auto bit = static_cast<uint8_t>(1u << place % 8);
-    byte = static_cast<uint8_t>((raw >> i & 1u) != 0 ? byte | bit : byte & ~bit);
+  for (unsigned i = 0; i < signal.bits;) {
+    const Piece piece = PieceOf(signal, i);
+    const unsigned mask = ((1u << piece.bits) - 1) << piece.shift;
+    uint8_t& byte = frame->data[piece.byte];
+    byte = static_cast<uint8_t>((byte & ~mask) | (raw >> i << piece.shift & mask));
+    i += piece.bits;
   }
 }
 
