@@ -62,12 +62,12 @@ void EmulatedArm::Integrate(double dt_s) {
   if (d_until_s != d_until_s_ || std::isinf(d_until_s)) d_Nm_ = disturbance_.At(time_s(), plant_, leader_);
   d_until_s_ = d_until_s;
   for (size_t i = 0; i < drives_.size(); ++i) tau_Nm[i] -= d_Nm_[i];
-  const PlanarPlant before = plant_;
+  const PlanarPlant::Joints q_before_rad = plant_.q_rad;
   plant_.Step(tau_Nm, dt_s);
   const bool sane = std::all_of(plant_.dq_rad_s.begin(), plant_.dq_rad_s.end(),
                                 [&](double dq) { return std::abs(dq) <= config_.diverged_rad_s; });
   if (!sane) {
-    plant_ = before;
+    plant_.q_rad = q_before_rad;
     plant_.dq_rad_s = {};
     diverged_ = true;
     released_ = false;

@@ -13,7 +13,8 @@ class PlanarPlant {
  public:
   using Joints = std::array<double, kMaxDof>;
 
-  explicit PlanarPlant(const PlanarArmConfig& config) : config_(config) {}
+  explicit PlanarPlant(const PlanarArmConfig& config)
+      : config_(config), posture_(PostureAt(posture_q_rad_)) {}
 
   int dof() const { return config_.dof; }
   const PlanarArmConfig& config() const { return config_; }
@@ -38,7 +39,20 @@ class PlanarPlant {
   double Energy() const;
 
  private:
+  /// Cosine and sine of the links' absolute angles.
+  struct Posture {
+    Joints cosine, sine;
+  };
+  Posture PostureAt(const Joints& q) const;
+  /// At q_rad: what the last step left, unless q_rad was set since.
+  Posture Here() const { return q_rad == posture_q_rad_ ? posture_ : PostureAt(q_rad); }
+  /// `from` after dt_s at the joint speeds dq.
+  Posture Turned(const Posture& from, const Joints& dq, double dt_s) const;
+  Joints Acceleration(const Posture& at, const Joints& dq, const Joints& tau_Nm) const;
+
   PlanarArmConfig config_;
+  Joints posture_q_rad_{};
+  Posture posture_;  ///< at posture_q_rad_
 };
 
 }  // namespace armada
