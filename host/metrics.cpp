@@ -90,14 +90,15 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   return json;
 }
 
-bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error) {
+bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write,
+                std::string* error) {
   const std::filesystem::path target(path);
   std::error_code code;
   if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), code);
   const std::string temporary = path + ".part";
   {
     std::ofstream file(temporary);
-    file << json.dump(2) << '\n';
+    write(file);
     if (!file.flush()) {
       *error = "cannot write " + temporary + ": " + std::strerror(errno);
       return false;
@@ -106,6 +107,11 @@ bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std:
   std::filesystem::rename(temporary, target, code);
   if (code) *error = "cannot write " + path + ": " + code.message();
   return !code;
+}
+
+bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error) {
+  return WriteWhole(
+      path, [&](std::ostream& file) { file << json.dump(2) << '\n'; }, error);
 }
 
 }  // namespace armada

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -64,6 +66,8 @@ struct RunMetrics {
 nlohmann::ordered_json ToJson(const RunMetrics& metrics);
 
 /// Writes through a temporary file, so that a reader never sees half of it. False with *error set.
+bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write, std::string* error);
+/// The same with one JSON value, indented.
 bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error);
 
 }  // namespace armada

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <iostream>
-#include <numeric>
 
 #include "firmware/app/exit_codes.h"
 #include "host/floor/floor.h"
@@ -15,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct FloorSweep {
-  std::vector<uint64_t> seeds;
+  SeedRange seeds;
   std::vector<FloorResult> floors;  ///< one a seed
 };
 
@@ -57,8 +56,8 @@ void Print(const ScenarioConfig& scenario, const FloorSweep& sweep) {
   std::printf("floor: fleet RMS %.3f mm over %g-%g s, ", together.fleet_rms_m * 1e3, scenario.window_start_s,
               scenario.seconds);
   std::printf(sweep.seeds.size() == 1 ? "seed %llu\n" : "seeds %llu to %llu\n",
-              static_cast<unsigned long long>(sweep.seeds.front()),
-              static_cast<unsigned long long>(sweep.seeds.back()));
+              static_cast<unsigned long long>(sweep.seeds.first),
+              static_cast<unsigned long long>(sweep.seeds.last));
 }
 
 }  // namespace
@@ -71,19 +70,16 @@ bool HasFloor(const ScenarioConfig& scenario) {
 }
 
 int RunFloorCommand(const FloorOptions& options) {
-  uint64_t first = options.seed;
-  uint64_t last = options.seed;
-  if (!options.seeds.empty() && !ParseSeeds(options.seeds, &first, &last)) {
+  const auto seeds =
+      options.seeds.empty() ? SeedRange{options.seed, options.seed, 1} : ParseSeeds(options.seeds);
+  if (!seeds) {
     std::cerr << "armada floor: --seeds " << options.seeds << ": allowed is A:B with A <= B\n";
     return kExitUsage;
   }
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
   if (!HasFloor(*scenario)) return kExitUsage;
-  FloorSweep sweep;
-  sweep.seeds.resize(last - first + 1);
-  std::iota(sweep.seeds.begin(), sweep.seeds.end(), first);
-  sweep.floors.resize(sweep.seeds.size());
+  FloorSweep sweep{*seeds, std::vector<FloorResult>(seeds->size())};
   RunSeedJobs(sweep.seeds, options.jobs, [&](size_t index, uint64_t seed) {
     sweep.floors[index] = Floor(*scenario, seed);
     return true;

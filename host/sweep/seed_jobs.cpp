@@ -4,19 +4,20 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace armada {
 namespace {
 
 class Runner {
  public:
-  Runner(const std::vector<uint64_t>& seeds, const SeedJob& job) : seeds_(seeds), job_(job) {}
+  Runner(const SeedRange& seeds, const SeedJob& job) : seeds_(seeds), job_(job) {}
 
   void Run(int jobs, bool progress) {
     std::vector<std::thread> threads;
@@ -55,7 +56,7 @@ class Runner {
     std::fputc('\n', stderr);
   }
 
-  const std::vector<uint64_t>& seeds_;
+  SeedRange seeds_;
   const SeedJob& job_;
   std::atomic<size_t> next_{0};
   std::mutex mutex_;
@@ -66,19 +67,7 @@ class Runner {
 
 }  // namespace
 
-bool ParsePair(const std::string& text, char separator, uint64_t* first, uint64_t* second) {
-  const char* end = text.data() + text.size();
-  auto [middle, code] = std::from_chars(text.data(), end, *first);
-  if (code != std::errc() || middle == end || *middle != separator) return false;
-  auto [rest, second_code] = std::from_chars(middle + 1, end, *second);
-  return second_code == std::errc() && rest == end;
-}
-
-bool ParseSeeds(const std::string& text, uint64_t* first, uint64_t* last) {
-  return ParsePair(text, ':', first, last) && *first <= *last;
-}
-
-void RunSeedJobs(const std::vector<uint64_t>& seeds, int jobs, const SeedJob& job) {
+void RunSeedJobs(const SeedRange& seeds, int jobs, const SeedJob& job) {
   if (jobs <= 0) jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   Runner(seeds, job).Run(jobs, isatty(STDERR_FILENO) != 0);
 }

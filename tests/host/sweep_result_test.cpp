@@ -2,82 +2,123 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/host/sweep_samples.h"
+
 namespace armada {
 namespace {
 
-SeedResult ResultOf(uint64_t seed, double rms_mm, bool ok) {
-  SeedResult result{.seed = seed, .ok = ok, .fleet_rms_mm = rms_mm, .floor_rms_mm = std::nullopt, .arms = {}};
-  result.arms.push_back({.id = 1,
-                         .diverged = !ok,
-                         .settled_s = std::nullopt,
-                         .rms_mm = rms_mm,
-                         .max_mm = 3.0 * rms_mm,
-                         .estimator_x_m = 1e-5,
-                         .floor_rms_mm = std::nullopt});
-  if (ok) result.arms[0].settled_s = 0.1 * static_cast<double>(seed);
-  return result;
+/// A file of this test's own.
+std::string PathOf(const std::string& name) {
+  return testing::TempDir() + "/armada_sweep_" +
+         testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
 }
 
-Sweep SweepOf(uint64_t first, uint64_t last, uint64_t step) {
-  Sweep sweep{"paper", {}, {}};
-  for (uint64_t seed = first; seed <= last; seed += step)
-    sweep.runs.push_back(ResultOf(seed, 0.5 + 0.001 * static_cast<double>(seed), true));
-  return sweep;
+std::string Written(const Sweep& sweep, const std::string& name) {
+  const std::string path = PathOf(name);
+  std::string error;
+  EXPECT_TRUE(WriteSweep(sweep, Summarize(sweep.results), path, &error)) << error;
+  return path;
+}
+
+std::string Bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<Sweep> Read(const std::vector<std::string>& paths) {
+  std::vector<Sweep> sweeps;
+  for (const std::string& path : paths) {
+    std::string error;
+    auto sweep = ReadSweep(path, &error);
+    EXPECT_TRUE(sweep.has_value()) << error;
+    sweeps.push_back(std::move(*sweep));
+  }
+  return sweeps;
+}
+
+std::string ErrorOf(const std::string& text) {
+  const std::string path = PathOf("wrong.json");
+  std::ofstream(path) << text;
+  std::string error;
+  EXPECT_FALSE(ReadSweep(path, &error).has_value());
+  EXPECT_EQ(error.rfind(path + ": ", 0), 0U) << error;
+  return error;
 }
 
 TEST(Sweep, ShardsMergeToTheWholeByteForByte) {
+  // The third shard of more than there are seeds is empty.
+  const std::vector<Sweep> shards =
+      Read({Written(SweepOf(3, 100, 3), "3"), Written(SweepOf(1, 100, 3), "1"),
+            Written(SweepOf(2, 100, 3), "2"), Written(SweepOf(9, 8, 1), "none")});
   std::string error;
-  const auto merged = Merge({SweepOf(3, 100, 3), SweepOf(1, 100, 3), SweepOf(2, 100, 3)}, &error);
+  const auto merged = Merge(shards, &error);
   ASSERT_TRUE(merged.has_value()) << error;
-  EXPECT_EQ(ToJson(*merged).dump(), ToJson(SweepOf(1, 100, 1)).dump());
+  EXPECT_EQ(Bytes(Written(*merged, "merged")), Bytes(Written(SweepOf(1, 100, 1), "whole")));
 }
 
-TEST(Sweep, ReadsBackWhatItWrote) {
-  const Sweep sweep = SweepOf(1, 20, 1);
-  std::string error;
-  const auto read = SweepFromJson(ToJson(sweep), &error);
-  ASSERT_TRUE(read.has_value()) << error;
-  EXPECT_EQ(ToJson(*read).dump(), ToJson(sweep).dump());
-}
-
-Sweep WithFloors(Sweep sweep, double floor_mm) {
-  for (SeedResult& run : sweep.runs) {
-    run.floor_rms_mm = floor_mm;
-    run.arms[0].floor_rms_mm = floor_mm;
+Sweep WithFloors(const Sweep& sweep, double floor_mm) {
+  std::vector<SeedResult> results;
+  for (size_t row = 0; row < sweep.results.rows(); ++row) {
+    results.push_back(sweep.results.At(row));
+    results.back().floor_rms_mm = results.back().arms[0].floor_rms_mm = floor_mm;
   }
-  return sweep;
+  return SweepOf(results);
 }
 
 TEST(Sweep, WithFloorsMergesToTheWholeByteForByte) {
+  const std::vector<Sweep> shards =
+      Read({Written(WithFloors(SweepOf(1, 10, 2), 0.4), "1"),
+            Written(WithFloors(SweepOf(2, 10, 2), 0.4), "2"), Written(SweepOf(12, 12, 1), "without")});
   std::string error;
-  const auto first = SweepFromJson(ToJson(WithFloors(SweepOf(1, 10, 2), 0.4)), &error);
-  const auto second = SweepFromJson(ToJson(WithFloors(SweepOf(2, 10, 2), 0.4)), &error);
-  ASSERT_TRUE(first.has_value() && second.has_value()) << error;
-  const Sweep without_seeds{"paper", {}, {}};
-  const auto merged = Merge({without_seeds, *first, *second}, &error);
+  const auto merged = Merge(Read({PathOf("1"), PathOf("2")}), &error);
   ASSERT_TRUE(merged.has_value()) << error;
-  EXPECT_EQ(ToJson(*merged).dump(), ToJson(WithFloors(SweepOf(1, 10, 1), 0.4)).dump());
-  EXPECT_FALSE(Merge({*first, SweepOf(2, 10, 2)}, &error).has_value());
+  const std::string whole = Bytes(Written(WithFloors(SweepOf(1, 10, 1), 0.4), "whole"));
+  EXPECT_EQ(Bytes(Written(*merged, "merged")), whole);
+  EXPECT_NE(whole.find("\"over_floor\": "), std::string::npos);
+  EXPECT_EQ(Bytes(PathOf("without")).find("floor"), std::string::npos) << "without --floor there is none";
+  EXPECT_FALSE(Merge(shards, &error).has_value());
   EXPECT_EQ(error, "some of the files have floors, some do not");
 }
 
-TEST(Sweep, SummaryMeasuresAgainstTheFloorsOfTheFleetsThatAreOk) {
-  Sweep sweep = SweepOf(1, 9, 1);
-  sweep.runs.push_back(ResultOf(10, 900.0, false));
-  const SweepSummary summary = Summarize(WithFloors(sweep, 0.25).runs);
-  ASSERT_TRUE(summary.floor_rms_mm.has_value());
-  EXPECT_NEAR(*summary.floor_rms_mm, 0.25, 1e-12);
-  EXPECT_EQ(summary.arms[0].over_floor.count, 9);
-  EXPECT_NEAR(summary.arms[0].over_floor.max, 0.509 / 0.25, 1e-12);
-  EXPECT_EQ(summary.arms[0].over_floor.worst_seed, 9u);
-  const auto json = ToJson(WithFloors(sweep, 0.25));
-  EXPECT_NEAR(json.at("over_floor").get<double>(), *summary.fleet_rms_mm / 0.25, 1e-12);
-  EXPECT_FALSE(ToJson(sweep).contains("floor_rms_mm")) << "without --floor there is none";
+TEST(Sweep, ReadsBackWhatItWrote) {
+  std::vector<SeedResult> results;
+  for (uint64_t seed = 1; seed <= 20; ++seed)
+    results.push_back(ResultOf(seed, 0.1 + 1.0 / static_cast<double>(seed), seed % 7 != 0));
+  Sweep sweep = SweepOf(results);
+  sweep.overrides = {"control.law=paper"};
+  const std::string path = Written(sweep, "first");
+  EXPECT_EQ(Bytes(Written(Read({path}).front(), "again")), Bytes(path));
+}
+
+TEST(Sweep, IsPlainJsonWithALineForEverySeed) {
+  const std::string text = Bytes(Written(SweepOf(5, 30, 5), "json"));
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json.at("runs").size(), 6U);
+  EXPECT_EQ(json.at("first_seed"), 5);
+  EXPECT_EQ(json.at("last_seed"), 30);
+  EXPECT_EQ(json.at("arms").at(0).at("settled_s").at("p99"), 3.0);
+  for (const auto& run : json.at("runs"))
+    EXPECT_NE(text.find("\n    {\"seed\":" + run.at("seed").dump() + ","), std::string::npos);
+}
+
+TEST(Sweep, NamesTheCommandThatReplaysItsWorstSeed) {
+  Sweep sweep = SweepOf(1, 20, 1);
+  sweep.scenario_file = "my scenarios/paper.toml";
+  sweep.overrides = {"control.law=paper", "arm.*.drive=\"damiao\""};
+  const auto header = HeaderJson(sweep, Summarize(sweep.results));
+  EXPECT_EQ(header.at("worst").at("settled_s").at(0).at("command"),
+            "armada sim 'my scenarios/paper.toml' --seed 20 --set control.law=paper --set "
+            "'arm.*.drive=\"damiao\"'");
 }
 
 TEST(Sweep, RefusesASeedThatIsInTwoShards) {
   std::string error;
-  EXPECT_FALSE(Merge({SweepOf(1, 10, 1), SweepOf(10, 20, 1)}, &error).has_value());
+  EXPECT_FALSE(
+      Merge(Read({Written(SweepOf(1, 10, 1), "a"), Written(SweepOf(10, 20, 1), "b")}), &error).has_value());
   EXPECT_EQ(error, "seed 10 is in two of the files");
 }
 
@@ -85,30 +126,29 @@ TEST(Sweep, RefusesShardsOfDifferentSettings) {
   Sweep other = SweepOf(11, 20, 1);
   other.overrides = {"control.law=paper"};
   std::string error;
-  EXPECT_FALSE(Merge({SweepOf(1, 10, 1), other}, &error).has_value());
+  EXPECT_FALSE(Merge(Read({Written(SweepOf(1, 10, 1), "a"), Written(other, "b")}), &error).has_value());
+  EXPECT_NE(error.find("different scenarios or settings"), std::string::npos) << error;
 }
 
 TEST(Sweep, RefusesWhatIsNoSweep) {
+  EXPECT_NE(ErrorOf("{\"schema\": 1").find("parse error"), std::string::npos);
+  EXPECT_NE(ErrorOf("{\"schema\": 1, \"mode\": \"sim\"}").find("not a sweep"), std::string::npos);
+  EXPECT_NE(ErrorOf("{\"schema\": 1, \"mode\": \"sweep\"}").find("runs"), std::string::npos);
+  EXPECT_NE(ErrorOf("[1, 2]").find("json.exception"), std::string::npos);
+  const std::string text = Bytes(Written(SweepOf(1, 2, 1), "good"));
+  std::string swapped = text;
+  swapped.replace(text.find("{\"seed\":1,\"ok\""), 9, "{\"seed\":9");
+  EXPECT_NE(ErrorOf(swapped).find("seed 2 stands after"), std::string::npos);
   std::string error;
-  EXPECT_FALSE(SweepFromJson({{"schema", 1}, {"mode", "sim"}}, &error).has_value());
-  EXPECT_FALSE(SweepFromJson({{"schema", 1}, {"mode", "sweep"}}, &error).has_value());
+  EXPECT_FALSE(ReadSweep("/nowhere/sweep.json", &error).has_value());
+  EXPECT_EQ(error, "/nowhere/sweep.json: cannot be read");
 }
 
-TEST(Sweep, SummaryCountsFailuresAndNamesTheWorstSeed) {
-  std::vector<SeedResult> runs = SweepOf(1, 99, 1).runs;
-  runs.push_back(ResultOf(100, 900.0, false));
-  const SweepSummary summary = Summarize(runs);
-  EXPECT_EQ(summary.count, 100);
-  EXPECT_EQ(summary.ok_count, 99);
-  EXPECT_EQ(summary.failed_seeds, std::vector<uint64_t>{100});
-  ASSERT_TRUE(summary.fleet_rms_mm.has_value());
-  EXPECT_LT(*summary.fleet_rms_mm, 1.0) << "over the fleets that are ok";
-  EXPECT_EQ(summary.fleet_rms_all_mm.worst_seed, 100u);
-  ASSERT_EQ(summary.arms.size(), 1u);
-  EXPECT_EQ(summary.arms[0].diverged, 1);
-  EXPECT_EQ(summary.arms[0].never_settled, 1);
-  EXPECT_EQ(summary.arms[0].rms_mm.worst_seed, 99u);
-  EXPECT_NEAR(summary.arms[0].rms_mm.median, 0.55, 1e-9);
+TEST(Sweep, SaysWhenItCannotBeWritten) {
+  const Sweep sweep = SweepOf(1, 2, 1);
+  std::string error;
+  EXPECT_FALSE(WriteSweep(sweep, Summarize(sweep.results), "/proc/no/sweep.json", &error));
+  EXPECT_NE(error.find("/proc/no/sweep.json"), std::string::npos) << error;
 }
 
 }  // namespace
