@@ -107,8 +107,12 @@ int main(int argc, char** argv) {
   run_command->callback([&] { code = RunRunCommand(run); });
 
   std::string report;
-  CLI::App* report_command = app.add_subcommand("report", "figures and a page of a finished run");
-  report_command->add_option("DIR", report, "directory written by `armada run` or `armada sim --trace`")
+  CLI::App* report_command = app.add_subcommand("report", "figures and a page of a finished run or sweep");
+  report_command
+      ->add_option("PATH", report,
+                   "directory written by `armada run` or `armada sim --trace`; or what `armada sweep --json` "
+                   "wrote, or "
+                   "the directory of its sweep.json")
       ->required();
   report_command->callback([&] { code = RunReportCommand(report); });
 

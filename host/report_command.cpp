@@ -44,16 +44,21 @@ int SimulateWithoutSubtasks(const std::string& directory) {
 
 }  // namespace
 
-int RunReportCommand(const std::string& directory) {
-  if (std::filesystem::exists(directory + "/scenario.toml")) {
-    if (const int code = SimulateWithoutSubtasks(directory); code != kExitOk) return code;
+int RunReportCommand(const std::string& path) {
+  // A sweep is one file; a run, a directory.
+  std::filesystem::path sweep = path;
+  if (std::filesystem::is_directory(path)) sweep /= "sweep.json";
+  const bool of_run = std::filesystem::is_directory(path) &&
+                      (std::filesystem::exists(path + "/metrics.json") || !std::filesystem::exists(sweep));
+  if (of_run && std::filesystem::exists(path + "/scenario.toml")) {
+    if (const int code = SimulateWithoutSubtasks(path); code != kExitOk) return code;
   }
   std::string error;
-  if (!WriteReport(directory, &error)) {
+  if (!(of_run ? WriteReport(path, &error) : WriteSweepReport(sweep, &error))) {
     std::cerr << "armada report: " << error << '\n';
     return kExitFailed;
   }
-  std::cout << directory << "/report.html\n";
+  std::cout << (of_run ? path + "/report.html" : sweep.replace_extension(".html").string()) << '\n';
   return kExitOk;
 }
 

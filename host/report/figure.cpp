@@ -98,7 +98,8 @@ void WriteLegend(std::ostream& script, const Figure& figure) {
   }
 }
 
-void WriteData(std::ostream& script, const RecordedRun& run) {
+std::string DataText(const RecordedRun& run) {
+  std::ostringstream script;
   size_t rows = 0;
   std::string ids;
   for (const ArmRecord& arm : run.arms) {
@@ -111,17 +112,18 @@ void WriteData(std::ostream& script, const RecordedRun& run) {
          << "trace(i) = \"../arm_\".id(i).\".csv\"\n"
          << "leader = \"../leader.csv\"\n"
          << "step = " << 1 + rows / kPointsPerCurve << "  # draw every step-th row\n";
+  return script.str();
 }
 
-void WriteStyle(std::ostream& script, const RecordedRun& run) {
+void WriteStyle(std::ostream& script, const std::vector<int>& arm_ids) {
   script << "set encoding utf8\n"
             "unset key\n"
             "set border 3 linecolor rgb \"black\" linewidth 0.8\n"
             "set tics nomirror scale 0.6\n"
             "set grid linecolor rgb \"#808080\" linewidth 0.4 dashtype 1\n";
-  for (size_t i = 0; i < run.arms.size(); ++i) {
+  for (size_t i = 0; i < arm_ids.size(); ++i) {
     script << "set linetype " << i + 1 << " linecolor rgb " << Quoted(ArmColour(i))
-           << " linewidth 1.5 dashtype " << ArmDash(i) << "  # arm " << run.arms[i].id << "\n";
+           << " linewidth 1.5 dashtype " << ArmDash(i) << "  # arm " << arm_ids[i] << "\n";
   }
 }
 
@@ -164,12 +166,18 @@ void WritePanel(std::ostream& script, const Figure& figure, size_t index) {
 }  // namespace
 
 std::string ScriptText(const Figure& figure, const RecordedRun& run) {
+  std::vector<int> arm_ids;
+  for (const ArmRecord& arm : run.arms) arm_ids.push_back(arm.id);
+  return ScriptText(figure, arm_ids, DataText(run));
+}
+
+std::string ScriptText(const Figure& figure, const std::vector<int>& arm_ids, const std::string& data) {
   std::ostringstream script;
   script << "# " << figure.title
          << ". Written by `armada report`, which overwrites it: keep a changed copy under\n"
-         << "# another name. To draw it again, in this folder: gnuplot " << figure.name << ".gp\n";
-  WriteData(script, run);
-  WriteStyle(script, run);
+         << "# another name. To draw it again, in this folder: gnuplot " << figure.name << ".gp\n"
+         << data;
+  WriteStyle(script, arm_ids);
   WriteTerminals(script, figure);
   WriteLayout(script, figure);
   WriteLegend(script, figure);

@@ -46,6 +46,9 @@ struct Figure {
 /// step-th row).
 std::string ScriptText(const Figure& figure, const RecordedRun& run);
 
+/// The same of any data: `data` are the gnuplot lines that name it. Line type i is of the i-th arm.
+std::string ScriptText(const Figure& figure, const std::vector<int>& arm_ids, const std::string& data);
+
 /// Legend entries of all arms.
 std::vector<LegendEntry> ArmLegend(const RecordedRun& run);
 

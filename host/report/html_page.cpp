@@ -1,8 +1,8 @@
 #include "host/report/html_page.h"
 
+#include "host/report/html_parts.h"
 #include "host/report/html_text.h"
 #include "host/report/number_text.h"
-#include "host/report/page_style.h"
 #include "host/report/palette.h"
 #include "host/report/process_table.h"
 #include "host/report/run_facts.h"
@@ -137,24 +137,12 @@ std::string Processes(const RecordedRun& run) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string FigureElement(const Figure& figure, size_t number, const std::filesystem::path& folder) {
-  const std::string file = "report/" + figure.name;
-  return "<figure id=\"" + figure.name + "\"><div class=\"wide picture\">" +
-         InlineSvg(folder / (figure.name + ".svg"), figure.name, figure.title) +
-         "</div>\n<figcaption><b>Figure " + std::to_string(number) + ". " + HtmlEscaped(figure.title) +
-         ".</b> " + HtmlEscaped(figure.caption) + " <code>" + file +
-         ".svg</code>, <code>.png</code>, drawn by <code>" + file + ".gp</code></figcaption></figure>\n";
-}
-
 }  // namespace
 
 std::string HtmlPage(const RecordedRun& run, const std::vector<Figure>& figures,
                      const std::filesystem::path& folder) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Armada: " +
-      Top(run, "scenario") + ", seed " + Top(run, "seed") + "</title>\n<style>" + kPageStyle +
-      "</style></head>\n<body>\n" + Verdict(run) + ArmTable(run) + Processes(run) + "<h2>Figures</h2>\n";
+  std::string html = PageOpening("Armada: " + Top(run, "scenario") + ", seed " + Top(run, "seed")) +
+                     Verdict(run) + ArmTable(run) + Processes(run) + "<h2>Figures</h2>\n";
   for (size_t i = 0; i < figures.size(); ++i) html += FigureElement(figures[i], i + 1, folder);
   return html + "<details><summary>All metrics (metrics.json)</summary><pre>" +
          HtmlEscaped(run.metrics.dump(2)) + "</pre></details>\n</body></html>\n";

@@ -28,7 +28,7 @@ th, td { padding: .35rem .45rem; text-align: right; white-space: nowrap; border-
 tr:last-child > * { border-bottom: 0; }
 thead th { color: var(--soft); font-weight: 600; vertical-align: bottom; background: var(--card); }
 tbody th, thead th:first-child { position: sticky; left: 0; text-align: left; background: var(--card); }
-td.word { text-align: left; }
+td.word, th.word { text-align: left; }
 tr.bad > * { background: var(--bad-card); } tr.bad strong { color: var(--bad); }
 .swatch { display: inline-block; width: .8em; height: .8em; border-radius: .15em; margin-right: .45em; }
 figure { margin: 2rem auto 0; max-width: 60rem; }

@@ -1,21 +1,17 @@
 #include "host/report/report.h"
 
-#include <fstream>
+#include <functional>
 #include <vector>
 
+#include "host/report/draw.h"
 #include "host/report/figures.h"
-#include "host/report/gnuplot.h"
 #include "host/report/html_page.h"
 #include "host/report/report_error.h"
+#include "host/report/sweep_figures.h"
+#include "host/report/sweep_page.h"
 
 namespace armada {
 namespace {
-
-void WriteFile(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) throw ReportError(path.string() + ": cannot be written");
-}
 
 std::vector<Figure> Figures(const RecordedRun& run, const std::filesystem::path& folder) {
   std::vector<Figure> figures = TaskSpaceFigures(run);
@@ -26,23 +22,6 @@ std::vector<Figure> Figures(const RecordedRun& run, const std::filesystem::path&
   return figures;
 }
 
-/// Draws <name>.svg and <name>.png; where that fails only the script stays, to be looked at.
-void Draw(const Figure& figure, const RecordedRun& run, const std::filesystem::path& folder) {
-  const std::string script = figure.name + ".gp";
-  WriteFile(folder / script, ScriptText(figure, run));
-  const std::filesystem::path pictures[] = {folder / (figure.name + ".svg"), folder / (figure.name + ".png")};
-  for (const auto& picture : pictures) std::filesystem::remove(picture);
-  try {
-    RunGnuplot(folder, script);
-    for (const auto& picture : pictures) {
-      if (!std::filesystem::exists(picture)) throw ReportError("gnuplot did not write " + picture.string());
-    }
-  } catch (const ReportError&) {
-    for (const auto& picture : pictures) std::filesystem::remove(picture);
-    throw;
-  }
-}
-
 void WriteReportOrThrow(const std::filesystem::path& dir) {
   const std::filesystem::path page = dir / "report.html";
   std::filesystem::remove(page);
@@ -50,23 +29,42 @@ void WriteReportOrThrow(const std::filesystem::path& dir) {
   const std::filesystem::path folder = dir / "report";
   std::filesystem::create_directories(folder);
   const std::vector<Figure> figures = Figures(run, folder);
-  for (const Figure& figure : figures) Draw(figure, run, folder);
-
-  const std::filesystem::path unfinished = folder / "report.html.part";
-  WriteFile(unfinished, HtmlPage(run, figures, folder));
-  std::filesystem::rename(unfinished, page);
+  for (const Figure& figure : figures) Draw(figure, ScriptText(figure, run), folder);
+  WritePage(HtmlPage(run, figures, folder), folder, page);
 }
 
-}  // namespace
+void WriteSweepReportOrThrow(const std::filesystem::path& file) {
+  if (file.extension() != ".json") throw ReportError(file.string() + ": a sweep's file ends in .json");
+  std::filesystem::path page = file;
+  page.replace_extension(".html");
+  std::filesystem::remove(page);
+  const RecordedSweep sweep = LoadRecordedSweep(file);
+  std::filesystem::path folder = file;
+  folder.replace_extension(".report");
+  std::filesystem::create_directories(folder);
+  const std::vector<Figure> figures = SweepFigures(sweep, folder);
+  for (const Figure& figure : figures) Draw(figure, ScriptText(figure, sweep), folder);
+  WritePage(SweepPage(sweep, figures, folder), folder, page);
+}
 
-bool WriteReport(const std::filesystem::path& dir, std::string* error) {
+bool Succeeds(const std::function<void()>& write, std::string* error) {
   try {
-    WriteReportOrThrow(dir);
+    write();
     return true;
   } catch (const std::exception& problem) {
     *error = problem.what();
     return false;
   }
+}
+
+}  // namespace
+
+bool WriteReport(const std::filesystem::path& dir, std::string* error) {
+  return Succeeds([&] { WriteReportOrThrow(dir); }, error);
+}
+
+bool WriteSweepReport(const std::filesystem::path& sweep, std::string* error) {
+  return Succeeds([&] { WriteSweepReportOrThrow(sweep); }, error);
 }
 
 }  // namespace armada

@@ -13,4 +13,8 @@ namespace armada {
 /// and one message that names the file or program at fault; needs gnuplot on PATH.
 bool WriteReport(const std::filesystem::path& dir, std::string* error);
 
+/// `armada report SWEEP.json`: the same of a sweep. Leaves SWEEP.report/<figure>.{gp,csv,svg,png} and, last,
+/// SWEEP.html beside the file.
+bool WriteSweepReport(const std::filesystem::path& sweep, std::string* error);
+
 }  // namespace armada

@@ -48,10 +48,14 @@ void WriteValue(const Json& value, std::ostream& out) {
 
 }  // namespace
 
-std::string ReplayCommand(const Sweep& sweep, uint64_t seed) {
-  std::string command = "armada sim " + ShellQuoted(sweep.scenario_file) + " --seed " + std::to_string(seed);
+std::string ReplayCommand(const Sweep& sweep) {
+  std::string command = "armada sim " + ShellQuoted(sweep.scenario_file);
   for (const std::string& set : sweep.overrides) command += " --set " + ShellQuoted(set);
-  return command;
+  return command + " --seed";
+}
+
+std::string ReplayCommand(const Sweep& sweep, uint64_t seed) {
+  return ReplayCommand(sweep) + " " + std::to_string(seed);
 }
 
 Json HeaderJson(const Sweep& sweep, const SweepSummary& summary) {
@@ -69,6 +73,7 @@ Json HeaderJson(const Sweep& sweep, const SweepSummary& summary) {
                {"ok_count", summary.ok_count},
                {"failed_count", summary.failed_count()},
                {"failed_seeds", summary.failed_seeds},
+               {"replay", ReplayCommand(sweep)},
                {"fleet_rms_mm", summary.fleet_rms_mm ? Json(*summary.fleet_rms_mm) : Json(nullptr)}};
   if (summary.floor_rms_mm) {
     json["floor_rms_mm"] = *summary.floor_rms_mm;

@@ -18,7 +18,9 @@ struct Sweep {
   ResultTable results;  ///< ascending by seed
 };
 
-/// The command line that runs one seed of a sweep again, quoted for a shell.
+/// The command line that runs a seed of the sweep again, quoted for a shell; the seed itself is to follow.
+std::string ReplayCommand(const Sweep& sweep);
+/// The same with its seed.
 std::string ReplayCommand(const Sweep& sweep, uint64_t seed);
 
 /// What the sweep's JSON (docs/metrics.md) says before `runs`.

@@ -110,9 +110,10 @@ TEST(Sweep, NamesTheCommandThatReplaysItsWorstSeed) {
   sweep.scenario_file = "my scenarios/paper.toml";
   sweep.overrides = {"control.law=paper", "arm.*.drive=\"damiao\""};
   const auto header = HeaderJson(sweep, Summarize(sweep.results));
-  EXPECT_EQ(header.at("worst").at("settled_s").at(0).at("command"),
-            "armada sim 'my scenarios/paper.toml' --seed 20 --set control.law=paper --set "
-            "'arm.*.drive=\"damiao\"'");
+  const std::string command =
+      "armada sim 'my scenarios/paper.toml' --set control.law=paper --set 'arm.*.drive=\"damiao\"' --seed";
+  EXPECT_EQ(header.at("replay"), command);
+  EXPECT_EQ(header.at("worst").at("settled_s").at(0).at("command"), command + " 20");
 }
 
 TEST(Sweep, RefusesASeedThatIsInTwoShards) {
