@@ -6,6 +6,7 @@
 
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
+#include "host/ablate/ablate_command.h"
 #include "host/can/can_command.h"
 #include "host/check.h"
 #include "host/floor/floor_command.h"
@@ -80,6 +81,16 @@ int main(int argc, char** argv) {
   floor_command->add_option("--jobs", floor.jobs, "threads; 0: all cores")->capture_default_str();
   floor_command->add_option("--json", floor.json, "write the result here, every seed included");
   floor_command->callback([&] { code = RunFloorCommand(floor); });
+
+  AblateOptions ablate;
+  CLI::App* ablate_command =
+      app.add_subcommand("ablate", "what each component earns: a scenario with one taken out at a time");
+  ablate.scenario.AddTo(ablate_command);
+  ablate_command->add_option("--seeds", ablate.seeds, "A:B, both included; the same for every row")
+      ->capture_default_str();
+  ablate_command->add_option("--jobs", ablate.jobs, "threads; 0: all cores")->capture_default_str();
+  ablate_command->add_option("--json", ablate.json, "write the table here");
+  ablate_command->callback([&] { code = RunAblateCommand(ablate); });
 
   RunOptions run;
   run.program_directory = ProgramDirectory();
