@@ -57,7 +57,7 @@ void EmulatedArm::ReleaseIfReady() {
 }
 
 void EmulatedArm::Integrate(double dt_s) {
-  PlanarPlant::Joints tau_Nm = Torque();
+  PlanarPlant::Joints tau_Nm = tau_Nm_;
   const double d_until_s = disturbance_.NextChange(time_s());
   if (d_until_s != d_until_s_ || std::isinf(d_until_s)) d_Nm_ = disturbance_.At(time_s(), plant_, leader_);
   d_until_s_ = d_until_s;
@@ -78,12 +78,18 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
   ReleaseIfReady();
   const double target_s = t_s - start_s_;
   while (clock_s_ < target_s) {
-    const double next_s = std::min(NextEventClock(), target_s);
+    if (clock_s_ >= quiet_until_s_) {
+      quiet_until_s_ = NextEventClock();
+      tau_Nm_ = Torque();
+    }
+    const double next_s = std::min(quiet_until_s_, target_s);
     const double step_end_s =
         next_s - clock_s_ > config_.step_s + kSameInstant_s ? clock_s_ + config_.step_s : next_s;
     if (released_ && step_end_s - clock_s_ > kSameInstant_s) Integrate(step_end_s - clock_s_);
     clock_s_ = step_end_s;
-    for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);
+    if (clock_s_ >= quiet_until_s_) {
+      for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);
+    }
     ReleaseIfReady();
   }
 }
@@ -91,6 +97,7 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
 void EmulatedArm::OnFrame(double t_s, const CanFrame& frame, FrameList* out) {
   AdvanceTo(t_s, out);
   for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), out);
+  quiet_until_s_ = clock_s_;
 }
 
 }  // namespace armada

@@ -48,6 +48,9 @@ class EmulatedArm {
   double d_until_s_ = 0.0;  ///< end of the interval that d_Nm_ is held for
   double start_s_;
   double clock_s_ = 0.0;  ///< since the bench was switched on: the drives' time
+  double quiet_until_s_ =
+      0.0;  ///< on that clock: until then drives and disturbance do nothing and change nothing
+  PlanarPlant::Joints tau_Nm_{};  ///< torque of the drives until then
   bool released_ = false;
   bool diverged_ = false;
 };
