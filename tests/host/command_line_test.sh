@@ -32,6 +32,9 @@ for command in floor 'sim --floor' 'sweep --floor'; do
   expect 2 'leaderless.toml has no leader' "$armada" $command "$source/hil/scenarios/leaderless.toml"
 done
 expect 2 'shard 3/2' "$armada" sweep "$scenario" --shard 3/2
+expect 2 'seeds 9:1' "$armada" ablate "$scenario" --seeds 9:1
+expect 78 'nonexistent.toml' "$armada" ablate /nonexistent.toml
+expect 1 'nonexistent.json: cannot be read' "$armada" report /nonexistent.json
 expect 2 'there are udp' "$armada" run "$scenario" --bus nonsense
 expect 2 'unknown|not expected|required' "$armada" fly
 own_network=(unshare --net)
@@ -64,6 +67,24 @@ for jobs in 1 2; do
     --json "$work/floor_$jobs.json"
 done
 cmp -s "$work/floor_1.json" "$work/floor_2.json" || fail "the floor depends on --jobs"
+
+# The command that a sweep names replays its worst seed to the same figures; the report is of the file or its directory.
+(cd "$work" && PATH=$bin:$PATH /usr/bin/python3 -) <<'PY' || fail "a worst seed is not what its command replays"
+import json, subprocess
+sweep = json.load(open("whole.json"))
+worst = sweep["worst"]["settled_s"][0]
+subprocess.run(worst["command"] + " --json replay.json", shell=True, check=True, stdout=subprocess.DEVNULL)
+replay = json.load(open("replay.json"))
+run = next(run for run in sweep["runs"] if run["seed"] == worst["seed"])
+assert replay["fleet_rms_mm"] == run["fleet_rms_mm"], (replay["fleet_rms_mm"], run)
+assert max(arm["settled_s"] for arm in replay["arms"]) == worst["value"] == sweep["fleet_settled_s"]["max"], worst
+PY
+expect 0 'whole.html' "$armada" report "$work/whole.json"
+[ -s "$work/whole.html" ] || fail "no page of the sweep"
+mkdir "$work/box" && cp "$work/whole.json" "$work/box/sweep.json"
+expect 0 'box/sweep.html' "$armada" report "$work/box"
+expect 0 'governor  +changes the reference' "$armada" ablate "$scenario" "${short[@]}" --seeds 1:2 --json "$work/ablation.json"
+grep -q '"mode": "ablation"' "$work/ablation.json" || fail "no ablation table"
 
 # Processes in real time. This checks that they work together, not how late this machine is: under a sanitizer or load
 # the fleet may miss its criterion (exit 1), never its results.
