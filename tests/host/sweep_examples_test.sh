@@ -49,6 +49,10 @@ for task in 1 2 3; do
   SLURM_ARRAY_TASK_ID=$task SLURM_ARRAY_TASK_COUNT=3 SLURM_CPUS_PER_TASK=1 bash $examples/sweep.sbatch "$work/array" "${sweep[@]}" \
     >"$work/out" 2>&1 || fail "task $task: $(cat "$work/out")"
 done
+# One task of it again, alone in its array.
+rm "$work/array/shards/2.json"
+SHARDS=3 SLURM_ARRAY_TASK_ID=2 SLURM_ARRAY_TASK_COUNT=1 bash $examples/sweep.sbatch "$work/array" "${sweep[@]}" \
+  >"$work/out" 2>&1 || fail "task 2 again: $(cat "$work/out")"
 expect 1 '0 of 7 fleets ok' "$ARMADA" sweep merge "$work"/array/shards/*.json --json "$work/array/sweep.json"
 same "$work/array/sweep.json"
 
