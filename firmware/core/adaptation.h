@@ -15,6 +15,7 @@ struct AdaptationConfig {
   AdaptationKind kind = AdaptationKind::kKalman;
   double initial_deviation = 3.0;
   double drift_variance = 1e-5;
+  bool second_order = true;
   double gradient_T = 0.1;
   double gradient_step_max = 0.5;
 
@@ -25,6 +26,9 @@ struct AdaptationConfig {
               initial_deviation);
     parameter({"drift_variance", "kg^2 m^4", 0, 1, "Kalman: variance added to each parameter a tick"},
               drift_variance);
+    parameter({"second_order", "", 0, 1,
+               "Kalman: counts as noise what theta's error makes of accelerations not foreseen"},
+              second_order);
     parameter({"gradient_T", "", 0, 1e3, "T of (1.8)"}, gradient_T);
     parameter({"gradient_step_max", "kg m^2", 0, 1e3,
                "largest change of theta_hat by the gradient in a tick; 0: no bound"},

@@ -13,11 +13,12 @@ double Square(double value) {
 }  // namespace
 
 AugmentedFilter::AugmentedFilter(const SensorConfig& sensor, const DisturbanceModelConfig& disturbance,
-                                 double theta_drift_variance, const ParameterMatrix& P_theta,
+                                 const AdaptationConfig& adaptation, const ParameterMatrix& P_theta,
                                  const PlanarArm& arm)
     : sensor_(sensor),
       disturbance_(disturbance),
-      theta_drift_variance_(P_theta.isZero() ? 0.0 : theta_drift_variance),
+      theta_drift_variance_(P_theta.isZero() ? 0.0 : adaptation.drift_variance),
+      second_order_(adaptation.second_order),
       joints_{JointVector::Zero(arm.dof()), JointVector::Zero(arm.dof())},
       d_hat_Nm_(JointVector::Zero(arm.dof())) {
   const Eigen::Index n = arm.dof();
@@ -78,12 +79,15 @@ void AugmentedFilter::PredictCovariance(const PlanarArm& arm, const ParameterVec
   B.leftCols(p) = -h * H_inverse.lazyProduct(Y);
   B.rightCols(n) = -h * H_inverse;
   const JointUnknownMatrix BP = B.lazyProduct(P_bb_);
-  // What theta makes of the part of the acceleration that the model did not foresee.
-  const RegressorMatrix unforeseen =
-      h * H_inverse.lazyProduct(arm.Regressor(at, dq_mid, dq_mid, ddq_sample) - Y);
-  const RegressorMatrix unforeseen_P = unforeseen.lazyProduct(P_bb_.topLeftCorner(p, p));
-  const JointMatrix V = BP.lazyProduct(B.transpose()) + unforeseen_P.lazyProduct(unforeseen.transpose()) +
-                        Square(h * disturbance_.fast_deviation_Nm) * H_inverse.lazyProduct(H_inverse);
+  JointMatrix V = BP.lazyProduct(B.transpose());
+  V += Square(h * disturbance_.fast_deviation_Nm) * H_inverse.lazyProduct(H_inverse);
+  if (second_order_) {
+    // What theta makes of the part of the acceleration that the model did not foresee.
+    const RegressorMatrix unforeseen =
+        h * H_inverse.lazyProduct(arm.Regressor(at, dq_mid, dq_mid, ddq_sample) - Y);
+    const RegressorMatrix unforeseen_P = unforeseen.lazyProduct(P_bb_.topLeftCorner(p, p));
+    V += unforeseen_P.lazyProduct(unforeseen.transpose());
+  }
 
   // P_xx = F P_xx F' + (F P_xb) (L B)' + (L B) (F P_xb)' + L V L',  P_xb = F P_xb + L B P_bb
   P_xx_.topRows(n) += h * P_xx_.bottomRows(n);

@@ -67,7 +67,7 @@ class AugmentedFilter {
 
   /// `P_theta`: covariance of theta_hat's start, p x p; zero where theta_hat is not to be changed.
   AugmentedFilter(const SensorConfig& sensor, const DisturbanceModelConfig& disturbance,
-                  double theta_drift_variance, const ParameterMatrix& P_theta, const PlanarArm& arm);
+                  const AdaptationConfig& adaptation, const ParameterMatrix& P_theta, const PlanarArm& arm);
 
   /// The first sample.
   void Start(const JointState& sample);
@@ -99,6 +99,7 @@ class AugmentedFilter {
   SensorConfig sensor_;
   DisturbanceModelConfig disturbance_;
   double theta_drift_variance_;
+  bool second_order_;
   JointState joints_;
   JointVector d_hat_Nm_;
   // Covariance of [x; b], x = [q; dq], b = [theta; d].

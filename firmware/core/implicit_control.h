@@ -5,11 +5,13 @@
 namespace armada {
 
 struct ImplicitControlConfig {
+  bool on = true;
   int sweeps = 60;
   double tolerance_rad_s = 1e-12;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
+    parameter({"on", "", 0, 1, "(1.2) by implicit Euler; false: as printed, which chatters"}, on);
     parameter(
         {"sweeps", "", 1, 1000, "bound on sweeps of the coordinate descent that solves the implicit sgn"},
         sweeps);

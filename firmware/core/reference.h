@@ -10,6 +10,7 @@ namespace armada {
 /// Robust form of (1.5): the convergence velocity alpha (x_hat - x) is bounded in speed and in braking.
 struct ReferenceConfig {
   double alpha_per_tick = 4.0;
+  bool implicit_pull = true;
   double approach_speed_m_s = 3.0;
   double braking_share = 0.9;
   double braking_min_m_s2 = 1.0;
@@ -25,6 +26,10 @@ struct ReferenceConfig {
          "alpha of (1.5) times the period, near the target; 5.87 is the sampled-data LQR's, less forgives "
          "more error of theta_hat"},
         alpha_per_tick);
+    parameter({"implicit_pull", "", 0, 1,
+               "the pull alpha e is that of the error left at the period's end; false: of the error before, "
+               "stable for alpha below 1/period only"},
+              implicit_pull);
     parameter({"approach_speed_m_s", "m/s", 1e-3, 100, "largest speed of approach, beside the leader's own"},
               approach_speed_m_s);
     parameter({"braking_share", "", 0.01, 1,

@@ -23,7 +23,7 @@ RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Le
       torque_limit_Nm_(torque_limit_Nm),
       latency_s_(sample_to_torque_s),
       theta_hat_(learned.theta_hat),
-      filter_(config.sensor, config.disturbance, config.adaptation.drift_variance,
+      filter_(config.sensor, config.disturbance, config.adaptation,
               CovarianceAtStart(config.adaptation, learned), arm),
       governor_(config.governor, JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
@@ -88,9 +88,10 @@ JointVector RobustLaw::TargetVelocity(const JointState& from, const Zeta& zeta_n
   bool reachable = true;
   for (int iteration = 0; iteration < config_.reference.iterations; ++iteration) {
     const JointVector dq_end = reachable ? target : from.dq_rad_s;
-    target = ReferenceVelocity(config_.reference, approach, config_.pseudoinverse, config_.subtask, arm_,
-                               from.q_rad + (0.5 * h) * (from.dq_rad_s + dq_end), dq_end,
-                               reachable ? 0.5 * h : 0.0, zeta_next, in.synced);
+    target =
+        ReferenceVelocity(config_.reference, approach, config_.pseudoinverse, config_.subtask, arm_,
+                          from.q_rad + (0.5 * h) * (from.dq_rad_s + dq_end), dq_end,
+                          reachable && config_.reference.implicit_pull ? 0.5 * h : 0.0, zeta_next, in.synced);
     reachable = (target - from.dq_rad_s).cwiseAbs().maxCoeff() <= governor_.acceleration_limit_rad_s2() * h;
   }
   return target;
@@ -108,18 +109,23 @@ JointVector RobustLaw::ControlTorque(const JointState& from, bool follows, const
   // (1.6) by exact difference.
   const JointVector ddq_r = (governor_.end_rad_s() - governor_.start_rad_s()) / h;
 
-  // (1.2) with s at the end of the step: H (s+ - s)/h + (K_s + J'K_x J) s+ + K_r sgn(s+) = 0.
   const JointVector s = dq - governor_.start_rad_s();
   H_hat_ = arm_.Inertia(at, theta_hat_);
   const JacobianMatrix J = arm_.Jacobian(at);
-  JointMatrix A = J.transpose() * config_.gains.K_x_Ns_m.asDiagonal() * J;
-  A.diagonal() += config_.gains.K_s_Nms_rad;
-  A = H_hat_ + h * A;
-  const JointVector s_next =
-      MinimizeWithL1(config_.implicit_control, A, H_hat_ * s, h * config_.gains.K_r_Nm);
+  JointMatrix K = J.transpose() * config_.gains.K_x_Ns_m.asDiagonal() * J;
+  K.diagonal() += config_.gains.K_s_Nms_rad;
+  JointVector feedback_Nm;
+  if (config_.implicit_control.on) {
+    // (1.2) with s at the end of the step: H (s+ - s)/h + K s+ + K_r sgn(s+) = 0.
+    const JointVector s_next =
+        MinimizeWithL1(config_.implicit_control, H_hat_ + h * K, H_hat_ * s, h * config_.gains.K_r_Nm);
+    feedback_Nm = H_hat_ * (s_next - s) / h;
+  } else {
+    feedback_Nm = -K * s - config_.gains.K_r_Nm.cwiseProduct(s.cwiseSign());
+  }
 
   const RegressorMatrix Y = arm_.Regressor(at, dq_mid, dq_r, ddq_r);
-  JointVector u = Y.lazyProduct(theta_hat_) + H_hat_ * (s_next - s) / h + filter_.d_hat_Nm();
+  const JointVector u = Y.lazyProduct(theta_hat_) + feedback_Nm + filter_.d_hat_Nm();
 
   const AdaptationKind kind = config_.adaptation.kind;
   if (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth) {

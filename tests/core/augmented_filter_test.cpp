@@ -55,7 +55,8 @@ TEST(AugmentedFilter, KnowsTheJointsFromTheModelWhereSamplesAreWorthNothing) {
   for (const PlanarArm& arm : random.AllKinds(1)) {
     if (arm.dof() > 4) continue;
     Bench bench(arm, random);
-    AugmentedFilter filter(Sensor(arm.dof(), 1.0, 1e6), {.drift_Nm = 0.0}, 0.0, Covariance(arm, 0.0), arm);
+    AugmentedFilter filter(Sensor(arm.dof(), 1.0, 1e6), {.drift_Nm = 0.0}, {.drift_variance = 0.0},
+                           Covariance(arm, 0.0), arm);
     filter.Start(bench.state());
     ParameterVector theta_hat = arm.Theta();
     for (int k = 0; k < 10; ++k) {
@@ -75,7 +76,8 @@ TEST(AugmentedFilter, PredictsAcrossTheChangeOfTorque) {
   const PlanarArm arm(PaperArm(6));
   PlanarPlant plant(arm.config());
   plant.q_rad = {0.3, 1.2, 0.5};
-  AugmentedFilter filter(Sensor(3, 1.0, 1e6), {.drift_Nm = 0.0}, 0.0, Covariance(arm, 0.0), arm);
+  AugmentedFilter filter(Sensor(3, 1.0, 1e6), {.drift_Nm = 0.0}, {.drift_variance = 0.0},
+                         Covariance(arm, 0.0), arm);
   filter.Start(StateOf(plant));
   const JointVector before_Nm = random.Numbers(3, 200.0);
   const JointVector after_Nm = random.Numbers(3, 200.0);
@@ -95,7 +97,7 @@ TEST(AugmentedFilter, IsTheExtendedKalmanFilter) {
     const SensorConfig sensor = Sensor(arm.dof(), 1e-3, 0.05);
     const DisturbanceModelConfig model;
     constexpr double kThetaDrift = 1e-4;
-    AugmentedFilter filter(sensor, model, kThetaDrift, Covariance(arm, 0.3), arm);
+    AugmentedFilter filter(sensor, model, {.drift_variance = kThetaDrift}, Covariance(arm, 0.3), arm);
     Bench bench(arm, random);
     filter.Start(bench.state());
     ParameterVector theta_hat = arm.Theta();
@@ -171,7 +173,7 @@ TEST(AugmentedFilter, FindsTheParametersOfThePapersArms) {
       config.gravity_m_s2 = gravity_m_s2;
       const PlanarArm arm(config);
       Bench bench(arm, random);
-      AugmentedFilter filter(Sensor(arm.dof()), {.fast_deviation_Nm = 1.0, .drift_Nm = 0.0}, 1e-5,
+      AugmentedFilter filter(Sensor(arm.dof()), {.fast_deviation_Nm = 1.0, .drift_Nm = 0.0}, {},
                              Covariance(arm, 3.0), arm);
       filter.Start(bench.state());
       ParameterVector theta_hat = ParameterVector::Constant(arm.parameter_count(), 3.0);
@@ -196,7 +198,7 @@ TEST(AugmentedFilter, IsNotSureOfWrongParameters) {
   constexpr int kRuns = 100;
   for (int run = 0; run < kRuns; ++run) {
     Bench bench(arm, random);
-    AugmentedFilter filter(Sensor(2), {.drift_Nm = 0.0}, 0.0, Covariance(arm, 3.0), arm);
+    AugmentedFilter filter(Sensor(2), {.drift_Nm = 0.0}, {.drift_variance = 0.0}, Covariance(arm, 3.0), arm);
     filter.Start(bench.state());
     ParameterVector theta_hat = random.Numbers<ParameterVector>(3, 2.5).array() + 2.5;
     Project({}, arm, theta_hat);
@@ -215,7 +217,7 @@ TEST(AugmentedFilter, CovarianceStaysSymmetricAndPositiveDefinite) {
   RandomArms random(6);
   for (const PlanarArm& arm : random.AllKinds(1)) {
     Bench bench(arm, random);
-    AugmentedFilter filter(Sensor(arm.dof()), {}, 1e-5, Covariance(arm, 3.0), arm);
+    AugmentedFilter filter(Sensor(arm.dof()), {}, {}, Covariance(arm, 3.0), arm);
     filter.Start(bench.state());
     ParameterVector theta_hat = arm.Theta();
     Project({}, arm, theta_hat);
@@ -238,7 +240,7 @@ class DisturbanceTest : public testing::Test {
     RandomArms random(7);
     const PlanarArm arm(PaperArm(6));
     Bench bench(arm, random);
-    AugmentedFilter filter(Sensor(3), model, 0.0, Covariance(arm, 0.0), arm);
+    AugmentedFilter filter(Sensor(3), model, {.drift_variance = 0.0}, Covariance(arm, 0.0), arm);
     filter.Start(bench.state());
     ParameterVector theta_hat = arm.Theta();
     for (int k = 0; k < std::lround(seconds / kH_s); ++k) {
@@ -270,7 +272,8 @@ TEST(AugmentedFilter, FindsTheSpeedFromQuantisedPositions) {
   const PlanarArm arm(PaperArm(4));
   const double step_rad = 2.0 * std::numbers::pi / 65536.0;
   Bench bench(arm, random);
-  AugmentedFilter filter(Sensor(2, step_rad / std::sqrt(12.0), 1e3), {}, 0.0, Covariance(arm, 0.0), arm);
+  AugmentedFilter filter(Sensor(2, step_rad / std::sqrt(12.0), 1e3), {}, {.drift_variance = 0.0},
+                         Covariance(arm, 0.0), arm);
   filter.Start(bench.state());
   ParameterVector theta_hat = arm.Theta();
   double filtered = 0.0;
