@@ -76,7 +76,24 @@ void LeaderPath::AddLegs(const LeaderConfig& config) {
 
 Zeta LeaderPath::At(double t_s) const {
   assert(kind_ != LeaderKind::kNone);
-  return kind_ == LeaderKind::kSine ? AtOnSine(t_s) : AtOnLegs(t_s);
+  if (kind_ == LeaderKind::kSine) return AtOnSine(t_s);
+  const auto [leg, state] = OnLegs(t_s);
+  return {leg->from_m + state.s_m * leg->direction, state.v_m_s * leg->direction,
+          state.a_m_s2 * leg->direction};
+}
+
+TaskVector LeaderPath::Jerk(double t_s) const {
+  assert(kind_ != LeaderKind::kNone);
+  if (kind_ == LeaderKind::kWaypoints) {
+    const auto [leg, state] = OnLegs(t_s);
+    return state.jerk_m_s3 * leg->direction;
+  }
+  TaskVector jerk_m_s3(static_cast<Eigen::Index>(axes_.size()));
+  std::transform(axes_.begin(), axes_.end(), jerk_m_s3.begin(), [&](const Axis& axis) {
+    const double w = axis.omega_rad_s;
+    return -axis.amplitude_m * w * w * w * std::cos(w * t_s + axis.phase_rad);
+  });
+  return jerk_m_s3;
 }
 
 Zeta LeaderPath::AtOnSine(double t_s) const {
@@ -94,33 +111,35 @@ Zeta LeaderPath::AtOnSine(double t_s) const {
   return zeta;
 }
 
-Zeta LeaderPath::AtOnLegs(double t_s) const {
+std::pair<const LeaderPath::Leg*, SCurve::State> LeaderPath::OnLegs(double t_s) const {
   const double lap_s = loop_ && period_s_ > 0.0 && t_s > 0.0 ? std::fmod(t_s, period_s_) : t_s;
   const auto next = std::upper_bound(legs_.begin(), legs_.end(), lap_s,
                                      [](double t, const Leg& leg) { return t < leg.departure_s; });
   // Before the first departure the first leg is at its start, by the SCurve itself; while resting, the leg
   // before is at its end.
   const Leg& leg = next == legs_.begin() ? legs_.front() : *(next - 1);
-  const SCurve::State state = leg.motion.At(lap_s - leg.departure_s);
-  return {leg.from_m + state.s_m * leg.direction, state.v_m_s * leg.direction, state.a_m_s2 * leg.direction};
+  return {&leg, leg.motion.At(lap_s - leg.departure_s)};
 }
 
 LeaderBounds LeaderPath::Bounds() const {
   LeaderBounds bounds;
-  const auto widen = [&](double v, double a, double jerk) {
+  const auto widen = [&](double v, double a, double jerk, double snap) {
     bounds.v_m_s = std::max(bounds.v_m_s, v);
     bounds.a_m_s2 = std::max(bounds.a_m_s2, a);
     bounds.jerk_m_s3 = std::max(bounds.jerk_m_s3, jerk);
+    bounds.snap_m_s4 = std::max(bounds.snap_m_s4, snap);
   };
   for (const Axis& axis : axes_) {
     const double w = axis.omega_rad_s;
-    widen(axis.amplitude_m * w, axis.amplitude_m * w * w, axis.amplitude_m * w * w * w);
+    const double speed = axis.amplitude_m * w;
+    widen(speed, speed * w, speed * w * w, speed * w * w * w);
   }
   for (const Leg& leg : legs_) {
     const double share =
         leg.direction.cwiseAbs().maxCoeff();  // of the motion, on the axis that has most of it
-    widen(share * leg.motion.peak_speed_m_s(), share * leg.motion.peak_acceleration_m_s2(),
-          share * leg.motion.peak_jerk_m_s3());
+    const double jerk = share * leg.motion.peak_jerk_m_s3();
+    widen(share * leg.motion.peak_speed_m_s(), share * leg.motion.peak_acceleration_m_s2(), jerk,
+          jerk > 0.0 ? std::numeric_limits<double>::infinity() : 0.0);
   }
   return bounds;
 }

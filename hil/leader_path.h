@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "firmware/core/zeta.h"
@@ -13,6 +14,8 @@ struct LeaderBounds {
   double v_m_s = 0.0;
   double a_m_s2 = 0.0;
   double jerk_m_s3 = 0.0;
+  double snap_m_s4 =
+      0.0;  ///< d jerk/dt; infinite where the jerk jumps. (A2) does not need it, predictions do
 };
 
 /// The leader's state zeta_0(t) = col(x_0, v_0, a_0), exact at any time, t = 0 being the fleet's start.
@@ -27,6 +30,9 @@ class LeaderPath {
 
   /// @pre the kind is not none. Allocates nothing.
   Zeta At(double t_s) const;
+
+  /// da_0/dt. @pre as for At. Allocates nothing.
+  TaskVector Jerk(double t_s) const;
 
   /// Exact, and attained. Zero where there is no leader: the point on which a leaderless fleet agrees is at
   /// rest.
@@ -49,7 +55,8 @@ class LeaderPath {
   void AddAxes(const LeaderConfig& config);
   void AddLegs(const LeaderConfig& config);
   Zeta AtOnSine(double t_s) const;
-  Zeta AtOnLegs(double t_s) const;
+  /// The leg under way and where along it the leader is.
+  std::pair<const Leg*, SCurve::State> OnLegs(double t_s) const;
 
   LeaderKind kind_;
   bool loop_ = false;

@@ -29,28 +29,28 @@ SCurve::SCurve(double length_m, const SCurveLimits& limits)
 SCurve::State SCurve::At(double t_s) const {
   if (t_s <= 0.0) return {};
   const double left_s = duration_s() - t_s;
-  if (left_s <= 0.0) return {length_m_, 0.0, 0.0};
+  if (left_s <= 0.0) return {length_m_, 0.0, 0.0, 0.0};
   if (t_s <= left_s) return FirstHalf(t_s);
   const State mirrored = FirstHalf(left_s);
-  return {length_m_ - mirrored.s_m, mirrored.v_m_s, -mirrored.a_m_s2};
+  return {length_m_ - mirrored.s_m, mirrored.v_m_s, -mirrored.a_m_s2, mirrored.jerk_m_s3};
 }
 
 SCurve::State SCurve::FirstHalf(double t_s) const {
   const double J = jerk_m_s3_;
-  if (t_s < jerk_time_s_) return {J * t_s * t_s * t_s / 6.0, 0.5 * J * t_s * t_s, J * t_s};
+  if (t_s < jerk_time_s_) return {J * t_s * t_s * t_s / 6.0, 0.5 * J * t_s * t_s, J * t_s, J};
 
   const double to_cruise_s = ramp_s_ - t_s;
   if (to_cruise_s >= jerk_time_s_) {
     const double held_s = t_s - jerk_time_s_;
     const double A = J * jerk_time_s_;
     const double v = 0.5 * A * jerk_time_s_;
-    return {v * jerk_time_s_ / 3.0 + v * held_s + 0.5 * A * held_s * held_s, v + A * held_s, A};
+    return {v * jerk_time_s_ / 3.0 + v * held_s + 0.5 * A * held_s * held_s, v + A * held_s, A, 0.0};
   }
   const double V = peak_speed_m_s_;
   const double at_cruise_m = 0.5 * V * ramp_s_ - V * to_cruise_s;
-  if (to_cruise_s <= 0.0) return {at_cruise_m, V, 0.0};
+  if (to_cruise_s <= 0.0) return {at_cruise_m, V, 0.0, 0.0};
   return {at_cruise_m + J * to_cruise_s * to_cruise_s * to_cruise_s / 6.0,
-          V - 0.5 * J * to_cruise_s * to_cruise_s, J * to_cruise_s};
+          V - 0.5 * J * to_cruise_s * to_cruise_s, J * to_cruise_s, -J};
 }
 
 }  // namespace armada

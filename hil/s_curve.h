@@ -18,6 +18,7 @@ class SCurve {
     double s_m = 0.0;
     double v_m_s = 0.0;
     double a_m_s2 = 0.0;
+    double jerk_m_s3 = 0.0;  ///< where it jumps: either value
   };
 
   SCurve(double length_m, const SCurveLimits& limits);

@@ -66,6 +66,8 @@ leader_t MessageAt(const LeaderPath& path, double path_time_s) {
   std::copy(zeta.x_m.begin(), zeta.x_m.end(), message.x_m);
   std::copy(zeta.v_m_s.begin(), zeta.v_m_s.end(), message.v_m_s);
   std::copy(zeta.a_m_s2.begin(), zeta.a_m_s2.end(), message.a_m_s2);
+  const TaskVector jerk_m_s3 = path.Jerk(path_time_s);
+  std::copy(jerk_m_s3.begin(), jerk_m_s3.end(), message.jerk_m_s3);
   return message;
 }
 

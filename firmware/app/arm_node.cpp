@@ -92,6 +92,7 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   Copy(zeta.x_m, message.x_m);
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
+  Copy(controller_.estimator().jerk_m_s3(), message.jerk_m_s3);
   return Encode(message, buffer);
 }
 
@@ -130,6 +131,7 @@ bool ArmNode::Take(Source& source, const Message& message, int64_t arrival_ns) {
     return false;
   source.stamp_ns = message.stamp_ns;
   source.neighbour.zeta = {ToTask(message.x_m), ToTask(message.v_m_s), ToTask(message.a_m_s2)};
+  source.neighbour.jerk_m_s3 = ToTask(message.jerk_m_s3);
   source.neighbour.heard = true;
   return true;
 }

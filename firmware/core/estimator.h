@@ -10,7 +10,7 @@ namespace armada {
 enum class EstimatorKind {
   kPaper,       ///< explicit Euler of (1.9), as printed
   kImplicit,    ///< implicit Euler: the set-valued sgn solved exactly, no chatter
-  kPredictive,  ///< implicit, around the prediction of the states to the end of the tick: third order in x
+  kPredictive,  ///< implicit, around the prediction of the states to the end of the tick: fourth order in x
 };
 
 struct EstimatorConfig {
@@ -58,6 +58,7 @@ struct Neighbour {
   bool heard = false;   ///< false until a first message has come
   double leader_age_s =
       0.0;  ///< age now of the newest leader state behind it; 0 for the leader, infinite for none
+  TaskVector jerk_m_s3 = TaskVector::Zero(kMaxTaskDim);  ///< the leader's, as passed on; 0 where not known
 };
 
 struct Neighbours {
@@ -69,8 +70,13 @@ struct Neighbours {
 /// w_j:
 ///   paper       zeta+ = zeta - h beta_c sgn(sum_j w_j (zeta - z_j))
 ///   implicit    zeta+ = m + sgn(f - m) max(0, |f - m| - h beta_c), f = zeta
-///   predictive  the same with f = Taylor(zeta, h) and z_j predicted to the end of the tick.
+///   predictive  the same with f = Taylor(zeta, h) and z_j predicted to the end of the tick. The leader's
+///               jerk serves the prediction, too; every node passes on the mean of what it heard of it.
 /// (Acary, Brogliato, Orlov, IEEE TAC 2012, for the implicit sgn.)
+///
+/// While nobody is heard the prediction goes on alone. With topologies that reach everybody only together
+/// that is as it should be: as long as the news of the leader are young the estimate stays in its band, and
+/// the first contact may correct it by what (A2) allows over all that time. Later it stands still and waits.
 class Estimator {
  public:
   static constexpr int kMaxAgreement = 30000;
@@ -82,6 +88,8 @@ class Estimator {
 
   /// The estimate at the time of the last Update's end.
   const Zeta& zeta() const { return zeta_; }
+  /// The leader's jerk as far as it has come here, for neighbours to predict by; 0 where it is not known.
+  const TaskVector& jerk_m_s3() const { return jerk_m_s3_; }
   /// Every component was within its band of the neighbours' mean in the last tick.
   bool in_band() const { return in_band_; }
   /// Number of ticks for which this node, and every node up to that many hops upstream, was in its band.
@@ -96,10 +104,13 @@ class Estimator {
 
  private:
   bool CountsAsHeard(const Neighbour& neighbour) const;
+  void Coast(const Zeta& f, double step_s, double leader_age_s);
   void UpdateAgreement(const Neighbours& neighbours);
 
   EstimatorConfig config_;
   Zeta zeta_;
+  TaskVector jerk_m_s3_;
+  double coasted_s_ = 0.0;  ///< since somebody was heard
   bool in_band_ = false;
   int agreement_ = 0;
   double leader_age_s_ = std::numeric_limits<double>::infinity();

@@ -10,8 +10,8 @@ inline constexpr int kMaxDof = 7;
 inline constexpr int kMaxTaskDim = 3;
 inline constexpr int kMaxParameters =
     kMaxDof * (kMaxDof + 1) / 2 + kMaxDof;  // inertia products, gravity moments
-inline constexpr int kMaxNeighbours = 16;   // in-edges of one node, leader included
 inline constexpr int kMaxArms = 64;
+inline constexpr int kMaxNeighbours = kMaxArms;  // whom one node may hear: the leader and every other arm
 
 template <int kMaxRows>
 using BoundedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;

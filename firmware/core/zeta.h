@@ -23,4 +23,14 @@ inline Zeta Taylor(const Zeta& zeta, double ahead_s) {
           zeta.v_m_s + ahead_s * zeta.a_m_s2, zeta.a_m_s2};
 }
 
+/// The state `ahead_s` later under constant jerk.
+inline Zeta Taylor(const Zeta& zeta, const TaskVector& jerk_m_s3, double ahead_s) {
+  const double t2_2 = 0.5 * ahead_s * ahead_s;
+  Zeta later = Taylor(zeta, ahead_s);
+  later.x_m += (t2_2 * ahead_s / 3.0) * jerk_m_s3;
+  later.v_m_s += t2_2 * jerk_m_s3;
+  later.a_m_s2 += ahead_s * jerk_m_s3;
+  return later;
+}
+
 }  // namespace armada

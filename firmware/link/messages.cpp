@@ -45,10 +45,11 @@ bool HasValidHeader(const Message& message) {
          IsIn(message.task_dim, 2, kMaxTaskDim);
 }
 
-// A state zeta = col(x, v, a) of the leader or of an estimate.
+// A state zeta = col(x, v, a) of the leader or of an estimate, and the leader's jerk.
 template <class Message>
 bool HasFiniteState(const Message& message) {
-  return AreFinite(message.x_m) && AreFinite(message.v_m_s) && AreFinite(message.a_m_s2);
+  return AreFinite(message.x_m) && AreFinite(message.v_m_s) && AreFinite(message.a_m_s2) &&
+         AreFinite(message.jerk_m_s3);
 }
 
 }  // namespace

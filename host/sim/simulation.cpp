@@ -117,6 +117,7 @@ void Simulation::SendLeader(int64_t k, double t_s) {
   Copy(zeta.x_m, message.x_m);
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
+  Copy(leader_->Jerk(t_s), message.jerk_m_s3);
   network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
 }
 

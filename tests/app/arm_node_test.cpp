@@ -67,6 +67,7 @@ class Board : public testing::Test {
       message.x_m[c] = zeta.x_m[c];
       message.v_m_s[c] = zeta.v_m_s[c];
       message.a_m_s2[c] = zeta.a_m_s2[c];
+      message.jerk_m_s3[c] = leader_.Jerk(TimeOf(k))[c];
     }
     node_.OnMessage({kLeaderChannel, Encode(message, &buffer_), NanosecondsOf(k)});
   }
@@ -175,6 +176,7 @@ TEST_F(Board, PublishesTheEstimateThatIsValidAtTheTick) {
   EXPECT_EQ(estimate.stamp_ns, NanosecondsOf(3));
   EXPECT_EQ(estimate.sequence, 1);
   EXPECT_EQ(estimate.x_m[0], node_.controller().zeta().x_m[0]);
+  EXPECT_EQ(estimate.jerk_m_s3[1], leader_.Jerk(TimeOf(2))[1]) << "as last heard";
 }
 
 TEST_F(Board, ATickAllocatesNothing) {

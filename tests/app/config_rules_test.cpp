@@ -470,24 +470,6 @@ TEST(FleetRules, TopologiesAreAtMostSixteen) {
   ExpectOneError({"", 8, "", "graph", {"given 17", "1 to 16"}}, file, ErrorsOf(text, &file));
 }
 
-TEST(FleetRules, AnArmListensToAtMostFifteenOthersInAllTopologies) {
-  std::string arms;
-  std::string pins;
-  std::string early;
-  std::string late;
-  for (int id = 1; id <= 17; ++id) {
-    arms += ArmText(id, kHeavyLink);
-    pins += std::to_string(id) + ", ";
-    if (id > 1) (id <= 9 ? early : late) += "{ from = " + std::to_string(id) + ", to = 1 }, ";
-  }
-  std::string file;
-  const std::string text = "name = \"x\"\ntopology_period_s = 1\n" + arms + "[[graph]]\npins = [" + pins +
-                           "]\nedges = [" + early + "]\n[[graph]]\npins = [" + pins + "]\nedges = [" + late +
-                           "]\n";
-  ExpectOneError({"", 3 + 17 * 5, "", "graph", {"arm 1 listens to 16", "at most 15"}}, file,
-                 ErrorsOf(text, &file));
-}
-
 TEST(FleetRules, ArmsAreAtMostSixtyFour) {
   std::string arms;
   for (int id = 1; id <= 65; ++id) arms += ArmText(id, kHeavyLink);

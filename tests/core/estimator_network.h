@@ -19,19 +19,19 @@ class EstimatorNetwork {
   /// Corollary 3: another topology from the next tick on.
   void Switch(const Digraph& graph) { graph_ = graph; }
 
-  /// One tick of `h_s` with the leader's state at its start.
-  void Tick(const Zeta& leader, double h_s) {
+  /// One tick of `h_s` with the leader's state at its start, and its jerk if it tells it.
+  void Tick(const Zeta& leader, double h_s, const TaskVector& jerk_m_s3 = TaskVector::Zero(kMaxTaskDim)) {
     const std::vector<Estimator> before = nodes_;
     for (int i = 0; i < graph_.node_count(); ++i) {
       Neighbours heard;
-      const auto add = [&](double weight, const Zeta& zeta, int agreement, double leader_age_s) {
-        if (weight > 0.0)
-          heard.list[static_cast<size_t>(heard.count++)] = {weight, zeta, 0.0, agreement, true, leader_age_s};
+      const auto add = [&](const Neighbour& neighbour) {
+        if (neighbour.weight > 0.0) heard.list[static_cast<size_t>(heard.count++)] = neighbour;
       };
-      add(graph_.pin(i), leader, Estimator::kMaxAgreement, 0.0);
+      add({graph_.pin(i), leader, 0.0, Estimator::kMaxAgreement, true, 0.0, jerk_m_s3});
       for (int j = 0; j < graph_.node_count(); ++j) {
         const Estimator& other = before[static_cast<size_t>(j)];
-        add(graph_.weight(i, j), other.zeta(), other.agreement(), other.leader_age_s());
+        add({graph_.weight(i, j), other.zeta(), 0.0, other.agreement(), true, other.leader_age_s(),
+             other.jerk_m_s3()});
       }
       nodes_[static_cast<size_t>(i)].Update(heard, h_s);
     }

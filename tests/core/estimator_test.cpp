@@ -197,6 +197,80 @@ TEST(Estimator, CoastOverMissedTicksIsTheOwnPrediction) {
   }
 }
 
+TEST(Estimator, PredictiveKindFollowsConstantJerkExactlyWhereTheLeaderTellsIt) {
+  const TaskVector jerk_m_s3{{15.0, -9.0}};
+  Zeta leader{TaskVector{{1.0, -2.0}}, TaskVector{{0.5, 1.0}}, TaskVector{{-2.0, 3.0}}};
+  Estimator estimator(Config(EstimatorKind::kPredictive), leader);
+  for (int k = 0; k < 100; ++k) {
+    Neighbour heard = Leader(leader);
+    heard.jerk_m_s3 = jerk_m_s3;
+    estimator.Update(Hearing({heard}), kH_s);
+    leader = Taylor(leader, jerk_m_s3, kH_s);
+    ExpectEqual(estimator.zeta(), leader, 1e-12);
+    EXPECT_EQ(estimator.jerk_m_s3(), jerk_m_s3);
+  }
+  for (int k = 0; k < 15; ++k) {  // nobody in this topology
+    estimator.Update(Neighbours{}, kH_s);
+    leader = Taylor(leader, jerk_m_s3, kH_s);
+    ExpectEqual(estimator.zeta(), leader, 1e-11);
+  }
+}
+
+TEST(Estimator, AJerkThatNoLeaderWithinA2HasIsNotFollowed) {
+  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  Estimator estimator(config, ZetaOf(1.0));
+  Neighbour wrong = Leader(ZetaOf(1.0));
+  wrong.jerk_m_s3 = TaskVector{{1e9, -1e9}};
+  for (int k = 0; k < 5; ++k) {
+    const Zeta before = estimator.zeta();
+    estimator.Update(Hearing({wrong}), kH_s);
+    EXPECT_EQ(estimator.jerk_m_s3(), (TaskVector{{config.beta_3_m_s3, -config.beta_3_m_s3}}));
+    const TaskVector moved = estimator.zeta().a_m_s2 - before.a_m_s2;
+    EXPECT_LE(moved.cwiseAbs().maxCoeff(), 2.0 * kH_s * config.beta_3_m_s3 + 1e-6);
+  }
+}
+
+// Topologies that reach an arm only in turn: what happened in between is corrected at the first contact.
+TEST(Estimator, StaysInItsBandWhileTheNewsAreYoung) {
+  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  Estimator estimator(config, ZetaOf(1.0));
+  const Neighbours rest = Hearing({Leader(ZetaOf(1.0))});
+  for (int k = 0; k < 6; ++k) estimator.Update(rest, kH_s);
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s)) - 1;
+  for (int k = 0; k < news_ticks; ++k) estimator.Update(Neighbours{}, kH_s);
+  EXPECT_TRUE(estimator.in_band());
+  EXPECT_EQ(estimator.agreement(), 6) << "what nobody confirms does not count";
+
+  Zeta moved = ZetaOf(1.0 + 0.9 * config.beta_1_m_s * config.age_max_s);
+  moved.v_m_s.setConstant(-0.9 * config.beta_2_m_s2 * config.age_max_s);
+  estimator.Update(Hearing({Leader(moved)}), kH_s);
+  EXPECT_TRUE(estimator.in_band());
+  ExpectEqual(estimator.zeta(), Taylor(moved, kH_s), 1e-12);
+
+  for (int k = 0; k < news_ticks + 2; ++k) estimator.Update(Neighbours{}, kH_s);
+  EXPECT_FALSE(estimator.in_band());
+  EXPECT_EQ(estimator.agreement(), 0);
+  estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kH_s);
+  EXPECT_FALSE(estimator.in_band()) << "lost: from here on it returns by beta, as at the start";
+}
+
+TEST(Estimator, StandsStillAndWaitsWhenTheLeaderIsLost) {
+  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  Zeta start = ZetaOf(1.0);
+  start.v_m_s.setConstant(2.0);
+  start.a_m_s2.setConstant(5.0);
+  Estimator estimator(config, start);
+  for (int k = 0; k < 6000; ++k) estimator.Update(Neighbours{}, kH_s);
+  const Zeta last = Taylor(start, config.age_max_s + kH_s);
+  EXPECT_LE((estimator.zeta().x_m - last.x_m).norm(), 0.1);
+  EXPECT_TRUE(estimator.zeta().v_m_s.isZero());
+  EXPECT_TRUE(estimator.zeta().a_m_s2.isZero());
+
+  int ticks = 0;  // until it agrees with a leader at rest at 0 again
+  while (!estimator.synced() && ++ticks < 1000) estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kH_s);
+  EXPECT_LE(ticks * kH_s, last.x_m[0] / config.beta_1_m_s + (config.sync_ticks + 1) * kH_s);
+}
+
 TEST(Estimator, IsSyncedAfterTheConfiguredTicksInBand) {
   EstimatorConfig config = Config(EstimatorKind::kPredictive);
   config.sync_ticks = 4;
@@ -239,12 +313,16 @@ TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
   };
   tick(leader, config.sync_ticks);
   ASSERT_TRUE(estimator.synced());
-  tick(Neighbours{}, 4);
+  Neighbours lost = leader;
+  lost.list[0].age_s = lost.list[0].leader_age_s = 1.001 * config.age_max_s;
+  tick(lost, 4);
+  EXPECT_EQ(estimator.agreement(), 0);
   tick(leader, config.sync_ticks);  // agreement is back: the count begins anew
   EXPECT_TRUE(estimator.synced());
-  tick(Neighbours{}, config.desync_ticks - 1);
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s));
+  tick(lost, news_ticks + config.desync_ticks - 2);
   EXPECT_TRUE(estimator.synced());
-  tick(Neighbours{}, 1);
+  tick(lost, 3);
   EXPECT_FALSE(estimator.synced());
   tick(leader, config.sync_ticks);
   EXPECT_TRUE(estimator.synced());
@@ -256,11 +334,15 @@ TEST(Estimator, ANeighbourSilentForTooLongIsNotHeardAnyMore) {
   Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
   for (int k = 0; k < config.sync_ticks; ++k) estimator.Update(leader, kH_s);
   ASSERT_TRUE(estimator.synced());
-  leader.list[0].age_s = config.age_max_s;
-  estimator.Update(leader, kH_s);
+  const auto update_at_age = [&](double age_s) {
+    leader.list[0].age_s = leader.list[0].leader_age_s = age_s;
+    estimator.Update(leader, kH_s);
+  };
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s));
+  for (int k = 1; k < news_ticks; ++k) update_at_age(k * kH_s);
+  update_at_age(config.age_max_s);
   EXPECT_GT(estimator.agreement(), 0) << "the bound itself is allowed";
-  leader.list[0].age_s = 1.001 * config.age_max_s;
-  for (int k = 0; k < config.desync_ticks; ++k) estimator.Update(leader, kH_s);
+  for (int k = 1; k <= config.desync_ticks; ++k) update_at_age(config.age_max_s + k * kH_s);
   EXPECT_EQ(estimator.agreement(), 0);
   EXPECT_FALSE(estimator.synced());
 }

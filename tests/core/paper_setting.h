@@ -38,6 +38,12 @@ inline Zeta PaperLeader(double t_s) {
           TaskVector{{-0.5 * w * w * s, -0.3 * w * w * c}}};
 }
 
+/// Its jerk.
+inline TaskVector PaperLeaderJerk(double t_s) {
+  constexpr double w = std::numbers::pi;
+  return TaskVector{{-0.5 * w * w * w * std::cos(w * t_s), 0.3 * w * w * w * std::sin(w * t_s)}};
+}
+
 /// Suprema of (A2) for that leader.
 inline constexpr double kLeaderSpeed_m_s = 0.5 * std::numbers::pi;
 inline constexpr double kLeaderAcceleration_m_s2 = kLeaderSpeed_m_s * std::numbers::pi;

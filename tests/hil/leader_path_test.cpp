@@ -113,6 +113,30 @@ TEST(LeaderPath, AccelerationIsContinuousWithTheJerkThatBoundsSays) {
   }
 }
 
+// Except where an SCurve's jerk jumps: in few of the intervals.
+TEST(LeaderPath, JerkIsTheDerivativeOfAcceleration) {
+  constexpr double h = 1e-5;
+  for (const LeaderConfig& config : ManyLeaders()) {
+    const LeaderPath path(config);
+    const LeaderBounds bounds = path.Bounds();
+    int samples = 0;
+    int jumps = 0;
+    for (double t = -0.1; t < std::min(path.period_s(), 20.0) + 0.2; t += 0.00937) {
+      const TaskVector slope = (path.At(t + h).a_m_s2 - path.At(t - h).a_m_s2) / (2.0 * h);
+      const double off = Largest(slope - path.Jerk(t));
+      ++samples;
+      jumps += off > 1e-4 * bounds.jerk_m_s3 + 1e-6 ? 1 : 0;
+      EXPECT_LE(Largest(path.Jerk(t)), bounds.jerk_m_s3 * (1.0 + 1e-9));
+    }
+    EXPECT_LE(jumps, std::isfinite(bounds.snap_m_s4) ? 0 : samples / 50 + 1);
+  }
+}
+
+TEST(LeaderPath, SnapOfThePapersLeaderIsTheFourthDerivative) {
+  EXPECT_NEAR(LeaderPath(PaperLeader()).Bounds().snap_m_s4, 0.5 * std::pow(M_PI, 4), 1e-9);
+  EXPECT_TRUE(std::isinf(LeaderPath(Triangle(true, 0.0)).Bounds().snap_m_s4));
+}
+
 TEST(LeaderPath, BoundsOnSpeedAndAccelerationHoldAndAreAttained) {
   for (const LeaderConfig& config : ManyLeaders()) {
     const LeaderPath path(config);
@@ -219,7 +243,9 @@ TEST(LeaderPath, EvaluationAllocatesNothing) {
   double sum = 0.0;
   {
     LimitMalloc guard;
-    for (double t = -1.0; t < 10.0; t += 0.01) sum += sine.At(t).x_m[0] + legs.At(t).a_m_s2[1];
+    for (double t = -1.0; t < 10.0; t += 0.01) {
+      sum += sine.At(t).x_m[0] + legs.At(t).a_m_s2[1] + sine.Jerk(t)[0] + legs.Jerk(t)[1];
+    }
   }
   EXPECT_TRUE(std::isfinite(sum));
 }

@@ -79,6 +79,7 @@ void ExpectOnPath(const LeaderPath& path, const leader_t& message) {
     EXPECT_EQ(message.x_m[c], zeta.x_m[c]);
     EXPECT_EQ(message.v_m_s[c], zeta.v_m_s[c]);
     EXPECT_EQ(message.a_m_s2[c], zeta.a_m_s2[c]);
+    EXPECT_EQ(message.jerk_m_s3[c], path.Jerk(message.path_time_s)[c]);
   }
 }
 

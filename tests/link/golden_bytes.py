@@ -16,6 +16,7 @@ def leader(armada):
     m = armada.leader_t()
     m.stamp_ns, m.sequence, m.path_time_s, m.task_dim = 0x0102030405060708, 1, 0.25, 2
     m.x_m, m.v_m_s, m.a_m_s2 = [1.5, -2.0, 0.0], [0.5, 4.0, 0.0], [-8.0, 0.125, 0.0]
+    m.jerk_m_s3 = [16.0, -0.5, 0.0]
     return m
 
 
@@ -24,6 +25,7 @@ def estimate(armada):
     m.stamp_ns, m.sequence, m.arm_id, m.task_dim = 1_000_000_007, 258, 7, 3
     m.agreement, m.leader_age_s = 0x0102, -1.0
     m.x_m, m.v_m_s, m.a_m_s2 = [1.0, 2.0, 3.0], [-1.0, -2.0, -3.0], [0.5, 0.25, 0.125]
+    m.jerk_m_s3 = [-4.0, 8.0, -0.25]
     return m
 
 

@@ -24,6 +24,7 @@ inline leader_t GoldenLeader() {
   Set(message.x_m, 1.5, -2.0, 0.0);
   Set(message.v_m_s, 0.5, 4.0, 0.0);
   Set(message.a_m_s2, -8.0, 0.125, 0.0);
+  Set(message.jerk_m_s3, 16.0, -0.5, 0.0);
   return message;
 }
 
@@ -38,6 +39,7 @@ inline estimate_t GoldenEstimate() {
   Set(message.x_m, 1.0, 2.0, 3.0);
   Set(message.v_m_s, -1.0, -2.0, -3.0);
   Set(message.a_m_s2, 0.5, 0.25, 0.125);
+  Set(message.jerk_m_s3, -4.0, 8.0, -0.25);
   return message;
 }
 

@@ -145,6 +145,7 @@ TEST(Leader, IsRefusedWhenAnyNumberIsNotFinite) {
       EXPECT_FALSE(IsAcceptedAfter(GoldenLeader(), [&](leader_t& m) { m.x_m[i] = bad; }));
       EXPECT_FALSE(IsAcceptedAfter(GoldenLeader(), [&](leader_t& m) { m.v_m_s[i] = bad; }));
       EXPECT_FALSE(IsAcceptedAfter(GoldenLeader(), [&](leader_t& m) { m.a_m_s2[i] = bad; }));
+      EXPECT_FALSE(IsAcceptedAfter(GoldenLeader(), [&](leader_t& m) { m.jerk_m_s3[i] = bad; }));
     }
   }
 }
@@ -157,6 +158,7 @@ TEST(Estimate, IsRefusedWhenAnyNumberIsNotFinite) {
       EXPECT_FALSE(IsAcceptedAfter(GoldenEstimate(), [&](estimate_t& m) { m.x_m[i] = bad; }));
       EXPECT_FALSE(IsAcceptedAfter(GoldenEstimate(), [&](estimate_t& m) { m.v_m_s[i] = bad; }));
       EXPECT_FALSE(IsAcceptedAfter(GoldenEstimate(), [&](estimate_t& m) { m.a_m_s2[i] = bad; }));
+      EXPECT_FALSE(IsAcceptedAfter(GoldenEstimate(), [&](estimate_t& m) { m.jerk_m_s3[i] = bad; }));
     }
   }
 }

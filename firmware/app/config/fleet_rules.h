@@ -17,7 +17,7 @@ void CheckFleet(const FleetLayout& fleet, const ConfigCursor& root, std::vector<
 void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root,
               std::vector<ConfigError>* errors);
 
-/// The topologies: known arms, weights, A1 of each or Corollary 2's tree, in-edges. @pre arm ids are unique.
+/// The topologies: known arms, weights, A1 of each or Corollary 2's tree. @pre arm ids are unique.
 void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, std::vector<ConfigError>* errors);
 
 }  // namespace armada

@@ -108,24 +108,6 @@ void CheckSchedule(const FleetLayout& fleet, const ConfigCursor& root, Errors* e
   }
 }
 
-// A board keeps a place for every node it listens to in any topology.
-void CheckInEdges(const FleetLayout& fleet, const ConfigCursor& graphs, Errors* errors) {
-  constexpr size_t kMost = kMaxNeighbours - 1;  // one place is the leader's
-  for (const ArmLayout& arm : fleet.arm) {
-    std::set<int> heard;
-    for (const GraphLayout& graph : fleet.graph) {
-      for (const EdgeLayout& edge : graph.edges) {
-        if (edge.to == arm.id) heard.insert(edge.from);
-      }
-    }
-    if (heard.size() <= kMost) continue;
-    Report(graphs,
-           "arm " + std::to_string(arm.id) + " listens to " + std::to_string(heard.size()) +
-               " arms in all topologies together, allowed are at most " + std::to_string(kMost),
-           errors);
-  }
-}
-
 }  // namespace
 
 void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, Errors* errors) {
@@ -141,8 +123,6 @@ void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, Errors* err
   if (IsClean(root.At("topology_period_s"), *errors) && IsClean(root.At("timing"), *errors)) {
     CheckSchedule(fleet, root, errors);
   }
-  CheckInEdges(fleet, graphs, errors);
-
   FleetConfig arms_and_graphs;  // ids are all that a digraph needs of the arms
   for (const ArmLayout& arm : fleet.arm) arms_and_graphs.arms.emplace_back().id = arm.id;
   for (size_t i = 0; i < fleet.graph.size(); ++i) {
