@@ -28,7 +28,7 @@ JointVector PaperLaw::Torque(const LawInput& in) {
   if (arm_.dof() > PlanarArm::kTaskDim && config_.subtask.kind != SubtaskKind::kNone) {
     const auto phi_at = [&](const JointVector& q_at) {
       const PlanarArm::Posture posture = arm_.At(q_at);
-      return SubtaskVelocity(config_.subtask, arm_, q_at, posture, arm_.Jacobian(posture));
+      return PrintedSubtaskVelocity(config_.subtask, arm_, q_at, posture, arm_.Jacobian(posture));
     };
     const JointVector phi = phi_at(q);
     const double step_s = config_.paper.difference_s;

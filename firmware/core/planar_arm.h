@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "firmware/core/obstacle.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -30,6 +31,10 @@ struct PlanarArmConfig {
   double base_y_m = 0.0;
   double base_orientation_rad = 0.0;  ///< angle of the first link at q_1 = 0
   double gravity_m_s2 = 0.0;  ///< along -y of the world; 0 for an arm that moves in a horizontal plane
+  JointVector q_min_rad;  ///< limits of the joints, n components; empty: none, the joints turn without end
+  JointVector q_max_rad;
+  int obstacle_count = 0;
+  std::array<ObstacleConfig, kMaxObstacles> obstacles{};
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -41,6 +46,11 @@ struct PlanarArmConfig {
     parameter(
         {"gravity_m_s2", "m/s^2", 0, 30, "gravity along -y of the world; 0 for an arm in a horizontal plane"},
         gravity_m_s2);
+    parameter(
+        {"q_min_rad", "rad", -1e3, 1e3,
+         "least angle of the joints, which spare joints keep: one value, or one a joint; left out: none"},
+        q_min_rad);
+    parameter({"q_max_rad", "rad", -1e3, 1e3, "largest angle of the joints, in the same way"}, q_max_rad);
   }
 };
 

@@ -50,8 +50,8 @@ JointVector ReferenceVelocity(const ReferenceConfig& config, const Approach& app
   if (error_m != 0.0) r += (approach.Speed(error_m, step_s) / error_m) * e;
 
   JointVector dq_r = J_sharp * r;  // (1.5)
-  if (arm.dof() > J.rows() && subtask.kind != SubtaskKind::kNone) {
-    const JointVector phi = SubtaskVelocity(subtask, arm, q, at, J);
+  if (HasSubtask(subtask, arm)) {
+    const JointVector phi = SubtaskVelocity(subtask, arm, {q, at, J, J_sharp, dq_r});
     dq_r += phi - J_sharp * (J * phi);
   }
   const double largest = dq_r.cwiseAbs().maxCoeff();

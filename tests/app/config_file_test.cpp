@@ -108,6 +108,8 @@ TEST(FleetFile, TheEffectiveFileReadsBackToTheSameValues) {
        {std::vector<std::string>{},
         {"arm.*.gravity_m_s2=9.81", "estimator.beta_1_m_s=4.000000000000001", "arm.3.base_x_m=-0.1",
          "name=\"a \\\"b\\\"\""},
+        {"arm.6.q_min_rad=-3", "arm.7.q_max_rad=[1.5, 2.5, 3]",
+         "arm.6.obstacle=[{x_m=3.0, y_m=-1.0}, {kind=\"half_plane\", y_m=-0.5, normal_rad=1.57}]"},
         {"estimator.leaderless=true", "topology_period_s=0.5",
          "graph=[{edges=[{from=1,to=2,weight=0.3},{from=2,to=3},{from=3,to=4},{from=4,to=5},{from=5,to=6},{"
          "from=6,to=7}]},"
@@ -127,6 +129,23 @@ TEST(FleetFile, TheEffectiveFileReadsBackToTheSameValues) {
       EXPECT_EQ(actual[i].value, expected[i].value) << expected[i].key;
     }
   }
+}
+
+TEST(FleetFile, LimitsAndObstaclesComeWithTheArm) {
+  const FleetConfig fleet = Paper(
+      {"arm.6.q_min_rad=-3", "arm.6.obstacle=[{x_m=3.0}, {kind=\"half_plane\", y_m=-0.5, normal_rad=1.57}]"});
+  const PlanarArmConfig& arm = fleet.arms[5].arm;
+  EXPECT_EQ(arm.q_min_rad, JointVector::Constant(3, -3.0)) << "one value stands for all joints";
+  EXPECT_EQ(arm.q_max_rad.size(), 0) << "no limit";
+  ASSERT_EQ(arm.obstacle_count, 2);
+  EXPECT_EQ(arm.obstacles[0].kind, ObstacleKind::kDisc);
+  EXPECT_EQ(arm.obstacles[1].y_m, -0.5);
+  EXPECT_EQ(fleet.arms[6].arm.obstacle_count, 0);
+}
+
+TEST(FleetFile, TheLawAsPrintedHasItsPostureAsPrinted) {
+  EXPECT_EQ(Paper().arms[5].control.subtask.form, PostureForm::kExact);
+  EXPECT_EQ(Paper({"control.law=paper"}).arms[5].control.subtask.form, PostureForm::kPrinted);
 }
 
 TEST(Override, ReplacesAValueOfTheFleet) {

@@ -54,6 +54,19 @@ TEST(ArmControllerMemory, StepAllocatesNothing) {
   }
 }
 
+TEST(ArmControllerMemory, StepAmongObstaclesAllocatesNothing) {
+  RandomArms random(2);
+  for (int dof = 3; dof <= kMaxDof; ++dof) {
+    ArmControllerConfig config = PaperController(random.Config(dof));
+    config.arm.q_min_rad = JointVector::Constant(dof, -0.5);
+    config.arm.q_max_rad = JointVector::Constant(dof, 0.5);
+    config.arm.obstacle_count = kMaxObstacles;
+    for (ObstacleConfig& obstacle : config.arm.obstacles) obstacle.x_m = random.In(-2.0, 2.0);
+    config.control.subtask.kind = SubtaskKind::kPosture;
+    ExpectNoAllocation(config, random);
+  }
+}
+
 TEST(ArmControllerMemory, TheCounterSeesAllocations) {
   if (!HeapCounter::available()) GTEST_SKIP() << "sanitizers own malloc";
   const uint64_t before = HeapCounter::Allocations();

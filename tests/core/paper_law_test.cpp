@@ -23,8 +23,15 @@ Instant RandomInstant(RandomArms& random, int id) {
   arm_config.gravity_m_s2 = id % 2 == 0 ? 9.81 : 0.0;
   const PlanarArm arm(arm_config);
   Instant instant{arm, PaperController(arm_config).control, {}, {}};
-  if (id == 6) instant.config.subtask = {SubtaskKind::kPosture, 2, 1.0, 9.0, 0.0};
-  if (id == 7) instant.config.subtask = {SubtaskKind::kManipulability, 1, 0.0, 1.0, 0.0};
+  SubtaskConfig& subtask = instant.config.subtask;
+  subtask.phi_max_rad_s = 0.0;
+  if (id == 6) {
+    subtask.kind = SubtaskKind::kPosture;
+    subtask.joint = 2;
+    subtask.goal_rad = 1.0;
+    subtask.gain = 9.0;
+  }
+  if (id == 7) subtask.kind = SubtaskKind::kManipulability;
   instant.theta_hat = random.Numbers<ParameterVector>(arm.parameter_count(), 5.0);
   LawInput& in = instant.in;
   const Eigen::Index n = arm.dof();
@@ -43,7 +50,7 @@ JointVector ReferenceSpeed(const Instant& c, const JointVector& q, const Zeta& z
   const PlanarArm::Posture at = c.arm.At(q);
   const Eigen::MatrixXd J = c.arm.Jacobian(at);
   const Eigen::MatrixXd J_sharp = J.completeOrthogonalDecomposition().pseudoInverse();
-  const JointVector phi = SubtaskVelocity(c.config.subtask, c.arm, q, at, c.arm.Jacobian(at));
+  const JointVector phi = PrintedSubtaskVelocity(c.config.subtask, c.arm, q, at, c.arm.Jacobian(at));
   const Eigen::MatrixXd N = Eigen::MatrixXd::Identity(c.arm.dof(), c.arm.dof()) - J_sharp * J;
   const double alpha = c.config.paper.alpha_1_s;
   return J_sharp * (zeta.v_m_s - alpha * (c.arm.Position(at) - zeta.x_m)) + N * phi;

@@ -229,7 +229,7 @@ JointVector AnalyticAcceleration(const PlanarArm& arm, const JointVector& q, con
   const TaskVector dr = zeta.a_m_s2 - alpha * (J * dq - zeta.v_m_s);
   const auto phi_at = [&](const JointVector& position) {
     const PlanarArm::Posture posture = arm.At(position);
-    return SubtaskVelocity(subtask, arm, position, posture, arm.Jacobian(posture));
+    return PrintedSubtaskVelocity(subtask, arm, position, posture, arm.Jacobian(posture));
   };
   JointVector motion = J_sharp * dr + dJ_sharp * r;
   if (arm.dof() == PlanarArm::kTaskDim) return motion;
@@ -268,6 +268,7 @@ TEST_F(ExactDifference, TendsTo1_6AwayFromSingularities) {
   subtask.kind = SubtaskKind::kPosture;
   subtask.joint = 2;
   subtask.goal_rad = 1.0;
+  subtask.form = PostureForm::kPrinted;
   for (int id = 1; id <= 7; ++id) {
     const PlanarArm arm(PaperArm(id));
     const JointVector q = arm.dof() == 2 ? JointVector{{0.3, 1.2}} : JointVector{{0.3, 1.2, 0.7}};

@@ -17,7 +17,7 @@ double Manipulability(const PlanarArm& arm, const JointVector& q) {
 
 JointVector Phi(const SubtaskConfig& config, const PlanarArm& arm, const JointVector& q) {
   const PlanarArm::Posture at = arm.At(q);
-  return SubtaskVelocity(config, arm, q, at, arm.Jacobian(at));
+  return PrintedSubtaskVelocity(config, arm, q, at, arm.Jacobian(at));
 }
 
 JointVector Gradient(const PlanarArm& arm, const JointVector& q) {

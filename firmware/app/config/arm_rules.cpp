@@ -26,6 +26,7 @@ class ArmRules {
     CheckCounts();
     CheckLaw();
     CheckSubtask();
+    CheckBarriers(arm_, fleet_.timing.period_s, root_, at_, errors_);
     const bool bounds_good = CheckProjectionBounds();
     if (!IsClean(at_, *errors_)) return;
     CheckReach();

@@ -40,6 +40,17 @@ constexpr auto EnumNames(SubtaskKind) {
       {{kNone, "none"}, {kPosture, "posture"}, {kManipulability, "manipulability"}});
 }
 
+constexpr auto EnumNames(PostureForm) {
+  using enum PostureForm;
+  return std::to_array<std::pair<PostureForm, std::string_view>>({{kPrinted, "printed"}, {kExact, "exact"}});
+}
+
+constexpr auto EnumNames(ObstacleKind) {
+  using enum ObstacleKind;
+  return std::to_array<std::pair<ObstacleKind, std::string_view>>(
+      {{kDisc, "disc"}, {kHalfPlane, "half_plane"}});
+}
+
 constexpr auto EnumNames(DriveProfile) {
   using enum DriveProfile;
   return std::to_array<std::pair<DriveProfile, std::string_view>>(

@@ -15,6 +15,7 @@ ArmEntry EntryOf(const ArmLayout& layout) {
   entry.joints = layout.joint;
   entry.control = layout.control;
   entry.control.Expand(entry.arm.dof, PlanarArm::kTaskDim);
+  if (entry.control.law == LawKind::kPaper) entry.control.subtask.form = PostureForm::kPrinted;
   return entry;
 }
 
@@ -35,6 +36,7 @@ ArmLayout ArmLayoutOf(const ArmEntry& entry) {
   }
   layout.arm = entry.arm;
   layout.link.assign(entry.arm.links.begin(), entry.arm.links.begin() + entry.arm.dof);
+  layout.obstacle.assign(entry.arm.obstacles.begin(), entry.arm.obstacles.begin() + entry.arm.obstacle_count);
   layout.joint = entry.joints;
   layout.control = entry.control;
   return layout;
@@ -60,6 +62,11 @@ PlanarArmConfig PlanarArmOf(const ArmLayout& layout) {
   PlanarArmConfig arm = layout.arm;
   arm.dof = static_cast<int>(layout.link.size());
   std::copy(layout.link.begin(), layout.link.end(), arm.links.begin());
+  arm.obstacle_count = static_cast<int>(layout.obstacle.size());
+  std::copy(layout.obstacle.begin(), layout.obstacle.end(), arm.obstacles.begin());
+  for (JointVector* limits : {&arm.q_min_rad, &arm.q_max_rad}) {
+    if (limits->size() == 1) *limits = JointVector::Constant(arm.dof, (*limits)[0]);
+  }
   return arm;
 }
 

@@ -50,6 +50,7 @@ struct ArmLayout {
   MoteusConfig moteus;
   PlanarArmConfig arm;
   std::vector<LinkConfig> link;
+  std::vector<ObstacleConfig> obstacle;
   std::vector<JointDriveConfig> joint;
   ControlConfig control;
 
@@ -70,6 +71,8 @@ struct ArmLayout {
     parameter.List({"link", "a link, 1 to 7 from the base outwards"}, link, [](size_t) {
       return LinkConfig{0.0, 0.0, 0.0, 0.0};
     });  // none has a default
+    parameter.List({"obstacle", "a thing at rest that the arm's links keep from by spare joints, at most 8"},
+                   obstacle);
     parameter.List(
         {"joint",
          "wiring of a joint, one a link; what is left out: node ids 1, 2, .., and what the arm says "
@@ -118,7 +121,7 @@ FleetConfig FleetOf(const FleetLayout& layout, const std::string& file);
 /// The file that means this.
 FleetLayout LayoutOf(const FleetConfig& fleet);
 
-/// The arm's geometry and masses. @pre at most kMaxDof links.
+/// The arm's geometry, masses, limits and obstacles. @pre at most kMaxDof links and kMaxObstacles obstacles.
 PlanarArmConfig PlanarArmOf(const ArmLayout& layout);
 
 }  // namespace armada

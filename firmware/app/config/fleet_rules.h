@@ -17,6 +17,10 @@ void CheckFleet(const FleetLayout& fleet, const ConfigCursor& root, std::vector<
 void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root,
               std::vector<ConfigError>* errors);
 
+/// One arm's limits and obstacles: counts, room, and joints to spare. @pre it has 1 to kMaxDof links.
+void CheckBarriers(const ArmLayout& arm, double period_s, const ConfigCursor& root, const ConfigCursor& at,
+                   std::vector<ConfigError>* errors);
+
 /// The topologies: known arms, weights, A1 of each or Corollary 2's tree. @pre arm ids are unique.
 void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, std::vector<ConfigError>* errors);
 
