@@ -74,13 +74,11 @@ void ArmController::Observe(const ArmInput& in, const Zeta& zeta) {
   status_.sigma_min = inverse.sigma_min;
   status_.manipulability = inverse.determinant_JJt;
   if (arm_.dof() > PlanarArm::kTaskDim) {
-    const ControlConfig& control = config_.control;
     // The same for dq_r in place of phi: (I - J#J) J# = 0.
-    const JointVector wanted =
-        control.law == LawKind::kPaper
-            ? PrintedSubtaskVelocity(control.subtask, arm_, in.q_rad, at, J)
-            : ReferenceVelocity(control.reference, control.pseudoinverse, control.subtask, arm_, in.q_rad,
-                                zeta, estimator_.synced());
+    const auto* robust = std::get_if<RobustLaw>(&law_);
+    const JointVector wanted = robust != nullptr
+                                   ? robust->dq_r_rad_s()
+                                   : PrintedSubtaskVelocity(config_.control.subtask, arm_, in.q_rad, at, J);
     const JointVector difference = in.dq_rad_s - wanted;
     status_.subtask_error_rad_s = (difference - inverse.J_sharp * (J * difference)).norm();
   }

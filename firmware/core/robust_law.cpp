@@ -35,8 +35,9 @@ JointVector RobustLaw::Torque(const LawInput& in) {
   period_s_ = in.period_s;
   Estimate(in);
   const JointState start = PredictAcrossLatency();
-  const JointVector target = TargetVelocity(start, Taylor(in.zeta_next, latency_s_), in);
-  const bool follows = governor_.Update(target, in.period_s);
+  dq_r_start_rad_s_ = dq_r_end_rad_s_;
+  dq_r_end_rad_s_ = TargetVelocity(start, Taylor(in.zeta_next, latency_s_), in);
+  const bool follows = governor_.Update(dq_r_end_rad_s_, in.period_s);
   return ControlTorque(start, follows, in);
 }
 
@@ -45,6 +46,7 @@ void RobustLaw::Estimate(const LawInput& in) {
   if (!started_) {
     filter_.Start(sample);
     governor_ = Governor(config_.governor, in.dq_rad_s);
+    dq_r_end_rad_s_ = in.dq_rad_s;
     started_ = true;
     return;
   }

@@ -21,6 +21,8 @@ class RobustLaw {
   void Applied(const JointVector& wanted_Nm, const JointVector& sent_Nm);
 
   const ParameterVector& theta_hat() const { return theta_hat_; }
+  /// dq_r of (1.5) for the start of this tick's period, before the governor.
+  const JointVector& dq_r_rad_s() const { return dq_r_start_rad_s_; }
   ParameterMatrix P_theta() const { return filter_.P_theta(); }
   const JointVector& d_hat_Nm() const { return filter_.d_hat_Nm(); }
 
@@ -39,6 +41,7 @@ class RobustLaw {
   AugmentedFilter filter_;
   Governor governor_;
   bool started_ = false;
+  JointVector dq_r_start_rad_s_, dq_r_end_rad_s_;
   JointVector tau_committed_Nm_;  ///< on its way to, or at, the drives
   JointVector tau_before_Nm_;     ///< in force until that one took over
   JointMatrix H_hat_;             ///< of this tick, for anti-windup

@@ -27,9 +27,10 @@ JointVector ExactTracking::JointVelocity(const JointVector& q_rad, const TaskVec
   const PlanarArm::Posture at = arm_.At(q_rad);
   const JacobianMatrix J = arm_.Jacobian(at);
   const InverseMatrix J_sharp = DampedPseudoinverse(kPseudoinverse, J).J_sharp;
-  if (arm_.dof() <= J.rows()) return J_sharp * v_m_s;
-  const JointVector phi = SubtaskVelocity(subtask_, arm_, q_rad, at, J);
-  return phi + J_sharp * (v_m_s - J * phi);
+  const JointVector dq_main = J_sharp * v_m_s;
+  if (!HasSubtask(subtask_, arm_)) return dq_main;
+  const JointVector phi = SubtaskVelocity(subtask_, arm_, {q_rad, at, J, J_sharp, dq_main});
+  return dq_main + phi - J_sharp * (J * phi);
 }
 
 PlanarPlant::Joints ExactTracking::Torque(const MovingArm& arm) {
