@@ -24,6 +24,29 @@ void AddFloor(const std::optional<double>& floor_rms_m, double rms_m, nlohmann::
   (*json)["over_floor"] = rms_m / *floor_rms_m;
 }
 
+nlohmann::ordered_json OrNull(const JointVector& limits) {
+  if (limits.size() == 0) return nullptr;
+  return std::vector<double>(limits.begin(), limits.end());
+}
+
+/// What is only there for an arm with a posture, with obstacles, with limits.
+void AddSpareJoints(const ArmMetrics& arm, nlohmann::ordered_json* json) {
+  if (arm.posture) {
+    (*json)["posture_joint"] = arm.posture->joint;
+    (*json)["posture_goal_rad"] = arm.posture->goal_rad;
+    (*json)["posture_max_rad"] = arm.posture->max_rad;
+  }
+  if (arm.clearance) {
+    (*json)["clearance_min_m"] = arm.clearance->min_m;
+    (*json)["clearance_wanted_m"] = arm.clearance->wanted_m;
+  }
+  if (arm.limits) {
+    (*json)["limit_margin_min_rad"] = arm.limits->margin_min_rad;
+    (*json)["q_min_rad"] = OrNull(arm.limits->q_min_rad);
+    (*json)["q_max_rad"] = OrNull(arm.limits->q_max_rad);
+  }
+}
+
 nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
   nlohmann::ordered_json json = {
       {"id", arm.id},
@@ -39,9 +62,10 @@ nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
       {"saturated_ticks", arm.saturated_ticks},
       {"parameter_error", arm.parameter_error},
       {"subtask_rms", OrNull(arm.subtask_rms_rad_s)},
-      {"posture_rms_rad", OrNull(arm.posture_rms_rad)},
+      {"posture_rms_rad", arm.posture ? nlohmann::ordered_json(arm.posture->rms_rad) : nullptr},
       {"state", arm.state},
       {"faults", arm.faults}};
+  AddSpareJoints(arm, &json);
   AddFloor(arm.floor_rms_m, arm.rms_m, &json);
   return json;
 }

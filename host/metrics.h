@@ -18,6 +18,26 @@ struct EstimatorRms {
   double a_m_s2 = 0.0;
 };
 
+/// How near a posture came to its goal, in the window.
+struct PostureMetrics {
+  int joint = 0;  ///< from 1
+  double goal_rad = 0.0;
+  double rms_rad = 0.0;  ///< distance from the nearest goal
+  double max_rad = 0.0;
+};
+
+/// How near an arm's links came to its obstacles, in the window.
+struct ClearanceMetrics {
+  double wanted_m = 0.0;  ///< clearance that the configuration asks for
+  double min_m = 0.0;     ///< negative: within an obstacle
+};
+
+/// How near an arm's joints came to their limits, in the window.
+struct LimitMetrics {
+  JointVector q_min_rad, q_max_rad;  ///< empty: none
+  double margin_min_rad = 0.0;       ///< negative: beyond a limit
+};
+
 /// Result of one arm in one run: an entry of "arms" in metrics.json.
 struct ArmMetrics {
   int id = 0;
@@ -33,8 +53,10 @@ struct ArmMetrics {
   int saturated_ticks = 0;
   double parameter_error = 0.0;             ///< |theta_hat - theta| / |theta| at the end
   std::optional<double> subtask_rms_rad_s;  ///< RMS of |e_s| in the window; none without a subtask
-  std::optional<double> posture_rms_rad;    ///< RMS distance from the posture's goal in the window
-  JointVector floor_posture_rad;            ///< joints at the tick at which the arm's floor begins
+  std::optional<PostureMetrics> posture;
+  std::optional<ClearanceMetrics> clearance;
+  std::optional<LimitMetrics> limits;
+  JointVector floor_posture_rad;  ///< joints at the tick at which the arm's floor begins
   std::string state = "INIT";
   std::vector<std::string> faults;
 };

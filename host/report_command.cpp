@@ -7,6 +7,7 @@
 
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
+#include "host/report/recorded_run.h"
 #include "host/report/report.h"
 #include "host/sim/sim_command.h"
 
@@ -16,8 +17,9 @@ namespace {
 // The same scenario and seed with every subtask off, in virtual time.
 int SimulateWithoutSubtasks(const std::string& directory) {
   std::vector<ConfigError> errors;
-  const auto scenario =
-      LoadScenario(directory + "/scenario.toml", {"arm.*.control.subtask.kind=none"}, &errors);
+  const auto scenario = LoadScenario(
+      directory + "/scenario.toml",
+      {"arm.*.control.subtask.kind=none", "arm.*.control.subtask.avoidance.enabled=false"}, &errors);
   if (!scenario) {
     PrintErrors(errors, std::cerr);
     return kExitBadConfig;
@@ -28,10 +30,8 @@ int SimulateWithoutSubtasks(const std::string& directory) {
     std::cerr << "armada report: " << directory << "/metrics.json is missing or not of a run\n";
     return kExitFailed;
   }
-  const bool any_subtask = std::any_of(json.at("arms").begin(), json.at("arms").end(), [](const auto& arm) {
-    return arm.value("subtask", "none") != "none";
-  });
-  if (!any_subtask) return kExitOk;
+  const auto& arms = json.at("arms");
+  if (std::none_of(arms.begin(), arms.end(), UsesSpareJoints)) return kExitOk;
   RunMetrics metrics;
   std::string error;
   if (!SimulateInto(*scenario, json.at("seed").get<uint64_t>(), directory + "/without_subtask", false,

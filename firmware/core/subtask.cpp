@@ -15,10 +15,6 @@ JointVector Bounded(const JointVector& phi, double largest_rad_s) {
   return (largest_rad_s / largest) * phi;
 }
 
-bool IsLimited(const PlanarArmConfig& arm, int j) {
-  return j < arm.q_min_rad.size() || j < arm.q_max_rad.size();
-}
-
 bool Avoids(const SubtaskConfig& config, const PlanarArm& arm) {
   return config.avoidance.enabled && HasBarriers(arm.config());
 }
@@ -61,14 +57,24 @@ JointVector ManipulabilityGradient(const PlanarArm& arm, const PlanarArm::Postur
   return gradient;
 }
 
+bool HasGoalInEveryTurn(const SubtaskConfig& config, const PlanarArmConfig& arm) {
+  const bool limited = arm.q_min_rad.size() > 0 || arm.q_max_rad.size() > 0;
+  return config.form == PostureForm::kExact && !limited;
+}
+
 double PostureError(const SubtaskConfig& config, const PlanarArm& arm, const JointVector& q,
                     const PlanarArm::Posture& at) {
   const int j = config.joint - 1;
   const double error = config.goal_rad - q[j];
-  if (config.form == PostureForm::kPrinted || IsLimited(arm.config(), j)) return error;
+  if (!HasGoalInEveryTurn(config, arm.config())) return error;
   const double cut = CutAngle(arm, j, at);
   const auto turn = [&](double angle) { return std::floor((angle - cut) / kTurn); };
   return error + kTurn * (turn(q[j]) - turn(config.goal_rad));
+}
+
+double PostureDistance(const SubtaskConfig& config, const PlanarArmConfig& arm, const JointVector& q) {
+  const double error = config.goal_rad - q[config.joint - 1];
+  return std::abs(HasGoalInEveryTurn(config, arm) ? std::remainder(error, kTurn) : error);
 }
 
 JointVector PrintedSubtaskVelocity(const SubtaskConfig& config, const PlanarArm& arm, const JointVector& q,

@@ -77,6 +77,13 @@ JointVector PrintedSubtaskVelocity(const SubtaskConfig& config, const PlanarArm&
 double PostureError(const SubtaskConfig& config, const PlanarArm& arm, const JointVector& q,
                     const PlanarArm::Posture& at);
 
+/// True when whole turns make no difference to the posture's goal: its form is exact, and the joints have no
+/// limits.
+bool HasGoalInEveryTurn(const SubtaskConfig& config, const PlanarArmConfig& arm);
+
+/// How far the posture's joint is from the nearest of its goals, rad.
+double PostureDistance(const SubtaskConfig& config, const PlanarArmConfig& arm, const JointVector& q);
+
 /// d det(J J') / dq, analytic: 2 det(J J') tr((J J')^-1 J dJ/dq_k'), written with the adjugate so that it
 /// holds at singularities too. m = 2.
 JointVector ManipulabilityGradient(const PlanarArm& arm, const PlanarArm::Posture& at,

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -54,6 +55,16 @@ Json ToJson(const ArmCheck& arm) {
       json["torque_needed_nm"].push_back(torque.needed_Nm);
       json["torque_limit_nm"].push_back(torque.limit_Nm);
     }
+  }
+  if (arm.path && std::isfinite(arm.path->clearance_m)) json["clearance_min_m"] = arm.path->clearance_m;
+  if (arm.path && std::isfinite(arm.path->limit_margin_rad))
+    json["limit_margin_min_rad"] = arm.path->limit_margin_rad;
+  if (arm.posture) {
+    json["posture"] = {{"joint", arm.posture->joint},
+                       {"goal_rad", arm.posture->goal_rad},
+                       {"at_goal_share", arm.posture->at_goal},
+                       {"stretched_share", arm.posture->stretched},
+                       {"folded_share", arm.posture->folded}};
   }
   return json;
 }

@@ -17,7 +17,7 @@ CheckResult BuildFleetCheck(const FleetConfig& fleet, const EmulatedDriveConfig&
   result.topologies = CheckTopologies(fleet);
   for (const ArmEntry& arm : fleet.arms) {
     const double bus_load = ArmBusLoad(arm, fleet.timing.period_s, drive);
-    result.arms.push_back({arm.id, arm.arm.dof, bus_load, {}, {}});
+    result.arms.push_back({arm.id, arm.arm.dof, bus_load, {}, {}, {}});
   }
   return result;
 }
@@ -59,7 +59,10 @@ CheckResult BuildCheck(const ScenarioConfig& scenario) {
     const LeaderPath leader(scenario.leader);
     result.estimator = CheckEstimator(scenario, leader);
     for (size_t i = 0; i < result.arms.size(); ++i) {
-      result.arms[i].path = CheckPath(scenario, scenario.fleet.arms[i], leader);
+      const ArmEntry& entry = scenario.fleet.arms[i];
+      result.arms[i].path = CheckPath(scenario, entry, leader);
+      if (entry.control.subtask.kind == SubtaskKind::kPosture)
+        result.arms[i].posture = CheckPosture(scenario, entry, leader);
     }
   }
   CollectFindings(scenario.fleet, result);

@@ -7,6 +7,7 @@
 #include "host/check/graph_check.h"
 #include "host/check/margin_check.h"
 #include "host/check/path_check.h"
+#include "host/check/posture_check.h"
 
 namespace armada {
 
@@ -26,6 +27,7 @@ struct ArmCheck {
   double bus_load = 0.0;                        ///< share of its bus
   std::optional<DisturbanceCheck> disturbance;  ///< of a scenario
   std::optional<PathCheck> path;                ///< of a scenario with a leader
+  std::optional<PostureCheck> posture;          ///< the same, of an arm with a posture
 };
 
 /// What `armada check` finds out about a fleet or a scenario beyond the rules that the loader enforces.

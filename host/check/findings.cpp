@@ -1,5 +1,6 @@
 #include "host/check/findings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -39,12 +40,53 @@ void JudgePath(const PathCheck& path, double sigma_threshold_m, Collector& found
   }
 }
 
+std::string Percent(double share) {
+  return Fixed(1e2 * share, 1) + " %";
+}
+
+void JudgePosture(const PostureCheck& posture, Collector& found) {
+  const std::string joint = "joint " + std::to_string(posture.joint);
+  const double way = std::max(posture.stretched, posture.folded);
+  if (!posture.attainable()) {
+    found.Warning(joint + " can be at its posture of " + Fixed(posture.goal_rad, 3) + " rad on " +
+                  Percent(posture.at_goal) + " of the leader's path only");
+  } else if (!posture.from_every_start() && way > 0.0) {
+    found.Warning(joint + " comes to its posture from the other side only while it can stretch or fold, on " +
+                  Percent(way) + " of the leader's path");
+  } else if (!posture.from_every_start()) {
+    found.Warning(joint +
+                  " cannot come to its posture from the other side: on the leader's path it can "
+                  "neither stretch nor fold");
+  }
+}
+
+// Perfect control leaves nothing of a margin but what the leader's path, or another barrier, takes away.
+void JudgeBarriers(const PathCheck& path, const AvoidanceConfig& avoidance, Collector& found) {
+  constexpr double kShare = 0.9;
+  if (!avoidance.enabled) return;
+  if (path.clearance_m < kShare * avoidance.clearance_m) {
+    found.Warning("comes to " + Fixed(1e3 * path.clearance_m, 0) +
+                  " mm from an obstacle on the leader's path (below 0: into it); clearance_m is " +
+                  Fixed(1e3 * avoidance.clearance_m, 0) + " mm");
+  }
+  if (path.limit_margin_rad < kShare * avoidance.joint_margin_rad) {
+    found.Warning(
+        "comes to " + Fixed(path.limit_margin_rad, 3) +
+        " rad from a joint's limit on the leader's path (below 0: beyond it); joint_margin_rad is " +
+        Fixed(avoidance.joint_margin_rad, 3));
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm) {
   Collector found(arm.id);
   if (const std::string error = BusLoadError(arm.bus_load); !error.empty()) found.Error(error);
-  if (arm.path) JudgePath(*arm.path, entry.control.pseudoinverse.sigma_threshold_m, found);
+  if (arm.path) {
+    JudgePath(*arm.path, entry.control.pseudoinverse.sigma_threshold_m, found);
+    JudgeBarriers(*arm.path, entry.control.subtask.avoidance, found);
+  }
+  if (arm.posture) JudgePosture(*arm.posture, found);
   if (arm.disturbance && !arm.disturbance->holds()) {
     found.Warning("K_r = " + Fixed(arm.disturbance->K_r_min_Nm, 1) +
                   " N m is below the disturbance's 2-norm of up to " + Fixed(arm.disturbance->d_2norm_Nm, 1) +

@@ -83,6 +83,8 @@ void MeasureMotion(PerfectMotion motion, const LeaderPath& leader, double distur
       needed_Nm = std::max(needed_Nm, std::abs(tau_Nm[static_cast<Eigen::Index>(i)]) + disturbance_Nm);
     }
     check.sigma_min = std::min(check.sigma_min, DampedPseudoinverse({}, arm.Jacobian(at)).sigma_min);
+    check.clearance_m = std::min(check.clearance_m, ClearanceOf(arm, motion.q_rad()));
+    check.limit_margin_rad = std::min(check.limit_margin_rad, LimitMarginOf(arm, motion.q_rad()));
     check.error_m = std::max(check.error_m, (leader_now.x_m - arm.Position(at)).norm());
   } while (motion.t_s() <= check.sampled_s);
 }
@@ -103,7 +105,7 @@ PathCheck CheckPath(const ScenarioConfig& scenario, const ArmEntry& entry, const
 
   check.error_allowed_m = scenario.criterion.error_max_m;
   check.sampled_s = std::min(length_s, kMotionMax_s);
-  check.sigma_min = std::numeric_limits<double>::infinity();
+  check.sigma_min = check.clearance_m = check.limit_margin_rad = std::numeric_limits<double>::infinity();
   for (const JointDriveConfig& joint : entry.joints) check.torques.push_back({0.0, joint.torque_limit_Nm});
   const DisturbanceConfig& disturbance = scenario.disturbance;
   const double disturbance_Nm = disturbance.kind == DisturbanceKind::kNone ? 0.0 : disturbance.amplitude_Nm;

@@ -30,6 +30,8 @@ struct PathCheck {
   double error_m = 0.0;  ///< largest distance from the leader: what limits and damping of the reference leave
   double error_allowed_m = 0.0;     ///< by the scenario's criterion
   double sampled_s = 0.0;           ///< length of the motion
+  double clearance_m = 0.0;         ///< least distance of a link from an obstacle; infinite without obstacles
+  double limit_margin_rad = 0.0;    ///< least distance of a joint from a limit; infinite without limits
   std::vector<TorqueNeed> torques;  ///< by joint
 
   /// Index of the joint that comes closest to its limit.

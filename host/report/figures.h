@@ -10,8 +10,9 @@ namespace armada {
 /// Estimates, task-space states and paths in the plane: Figs. 3, 4 and 5 of the paper.
 std::vector<Figure> TaskSpaceFigures(const RecordedRun& run);
 
-/// One figure for each arm with a subtask, with and without it: Figs. 6 (posture) and 7 (manipulability) of
-/// the paper.
+/// Figures for each arm with a use for its spare joints, with and without it: the joints of one with a
+/// posture (Fig. 6 of the paper) or limits, the manipulability of one that raises it (Fig. 7), and the
+/// clearance of one with obstacles.
 std::vector<Figure> SubtaskFigures(const RecordedRun& run);
 
 /// Distance of each end-effector from the leader. Writes `folder`/error.csv, which the figure draws.

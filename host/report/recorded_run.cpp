@@ -55,7 +55,7 @@ ArmRecord ReadArm(const std::filesystem::path& dir, const Json& metrics) {
   if (!settled.is_null()) arm.settled_s = settled.get<double>();
 
   const std::filesystem::path twin = dir / "without_subtask";
-  if (arm.subtask != "none" && std::filesystem::exists(twin)) {
+  if (UsesSpareJoints(metrics) && std::filesystem::exists(twin)) {
     int twin_joints = 0;
     arm.without_subtask = ReadTrace(twin / file_name, &twin_joints);
     if (twin_joints != joints) {
@@ -67,6 +67,11 @@ ArmRecord ReadArm(const std::filesystem::path& dir, const Json& metrics) {
 }
 
 }  // namespace
+
+bool UsesSpareJoints(const Json& arm) {
+  return arm.value("subtask", "none") != "none" || arm.contains("clearance_min_m") ||
+         arm.contains("limit_margin_min_rad");
+}
 
 const Json& RequireKey(const Json& object, const std::string& key, const std::string& part) {
   const auto found = object.find(key);

@@ -40,6 +40,10 @@ struct RecordedRun {
 /// Throws ReportError that names the file (and the line, column or key) that is missing or wrong.
 RecordedRun LoadRecordedRun(const std::filesystem::path& dir);
 
+/// True of an arm's object of metrics.json when a subtask, limits or obstacles have a use for its spare
+/// joints: it has a twin that has not.
+bool UsesSpareJoints(const Json& arm);
+
 /// Value of `key` in a part of metrics.json; throws ReportError that names the key and the part where it is
 /// absent.
 const Json& RequireKey(const Json& object, const std::string& key, const std::string& part);

@@ -8,6 +8,7 @@
 
 #include "firmware/link/channels.h"
 #include "host/sim/trace_writer.h"
+#include "host/subtask_record.h"
 
 namespace armada {
 namespace {
@@ -86,11 +87,10 @@ Zeta RunRecorder::TruthAt(int64_t stamp_ns) const {
 ArmMetrics RunRecorder::Metrics(size_t index) const {
   const ArmRecord& record = arms_[index];
   const ArmEntry& entry = scenario_.fleet.arms[index];
-  const SubtaskConfig& subtask = entry.control.subtask;
   ArmMetrics metrics;
   metrics.id = entry.id;
   metrics.dof = entry.arm.dof;
-  metrics.subtask = subtask.kind;
+  metrics.subtask = entry.control.subtask.kind;
   if (!record.latest) return metrics;
 
   EstimatorRms squares;
@@ -107,20 +107,14 @@ ArmMetrics RunRecorder::Metrics(size_t index) const {
   metrics.estimator_rms = {Rms(squares.x_m, estimates), Rms(squares.v_m_s, estimates),
                            Rms(squares.a_m_s2, estimates)};
 
-  double subtask_squares = 0.0;
-  double posture_squares = 0.0;
-  size_t ticks = 0;
+  SubtaskRecord subtask(entry);
   for (const telemetry_t& tick : record.telemetry) {
     for (const double tau_Nm : tick.tau_Nm)
       metrics.torque_max_Nm = std::max(metrics.torque_max_Nm, std::abs(tau_Nm));
     if (!InWindow(tick.stamp_ns)) continue;
-    subtask_squares += tick.subtask_error_rad_s * tick.subtask_error_rad_s;
-    if (subtask.kind == SubtaskKind::kPosture)
-      posture_squares += std::pow(tick.q_rad[subtask.joint - 1] - subtask.goal_rad, 2);
-    ++ticks;
+    subtask.Update(ToJoints(tick.q_rad, entry.arm.dof), tick.subtask_error_rad_s);
   }
-  if (subtask.kind != SubtaskKind::kNone) metrics.subtask_rms_rad_s = Rms(subtask_squares, ticks);
-  if (subtask.kind == SubtaskKind::kPosture) metrics.posture_rms_rad = Rms(posture_squares, ticks);
+  subtask.WriteTo(&metrics);
   metrics.saturated_ticks = record.latest->saturated_ticks;
   metrics.state = NameOf(static_cast<ControllerState>(record.latest->state));
   const ParameterVector theta = PlanarArm(entry.arm).Theta();
@@ -203,6 +197,7 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
       row.sigma_min = tick.sigma_min;
       row.manipulability = (J * J.transpose()).determinant();
       row.subtask_error_rad_s = tick.subtask_error_rad_s;
+      row.clearance_m = ClearanceOf(arm, q);
       row.synced = tick.synced != 0;
       trace.Arm(i, row);
       std::fprintf(timing.get(), "%d,%.6f,%d,%d,%d\n", static_cast<int>(tick.arm_id), t_s,

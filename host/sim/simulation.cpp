@@ -21,8 +21,8 @@ TaskVector TipPosition(const EmulatedArm& bench) {
   return x;
 }
 
-JointVector JointsOf(const EmulatedArm& bench) {
-  return Eigen::Map<const JointVector>(bench.plant().q_rad.data(), bench.plant().dof());
+JointVector JointsOf(const PlanarPlant& plant) {
+  return Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
 }
 
 double Rms(double sum_squares, int64_t count) {
@@ -46,6 +46,7 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
     arms_.push_back(Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
                         .bench = EmulatedArm(scenario_, i, seed, start, leader, -kBringUp_s),
                         .record = TrackingRecord(scenario_),
+                        .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
                         .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
   }
 }
@@ -146,7 +147,7 @@ TaskVector Simulation::Target(double t_s) const {
 void Simulation::Observe(int64_t k) {
   const double t_s = TimeOf(k);
   if (k == FloorStartTick(scenario_)) {
-    for (Arm& arm : arms_) arm.floor_posture_rad = JointsOf(arm.bench);
+    for (Arm& arm : arms_) arm.floor_posture_rad = JointsOf(arm.bench.plant());
   }
   if (t_s < scenario_.window_start_s) return;
   // After Step the estimates are valid at the end of the tick.
@@ -163,12 +164,8 @@ void Simulation::Observe(int64_t k) {
       estimate_spread_m_ =
           std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
     }
-    arm.subtask_squares += std::pow(arm.node.controller().status().subtask_error_rad_s, 2);
-    const SubtaskConfig& subtask = scenario_.fleet.arms[i].control.subtask;
-    if (subtask.kind == SubtaskKind::kPosture) {
-      arm.posture_squares +=
-          std::pow(arm.bench.plant().q_rad[static_cast<size_t>(subtask.joint - 1)] - subtask.goal_rad, 2);
-    }
+    arm.subtask_record.Update(JointsOf(arm.bench.plant()),
+                              arm.node.controller().status().subtask_error_rad_s);
     ++arm.window_ticks;
   }
 }
@@ -184,7 +181,7 @@ void Simulation::Trace(int64_t k, TraceWriter* trace) {
     const PlanarPlant::Tip tip = plant.EndEffector();
     TraceRow row;
     row.t_s = t_s;
-    row.q_rad = JointsOf(arm.bench);
+    row.q_rad = JointsOf(plant);
     row.dq_rad_s = Eigen::Map<const Eigen::VectorXd>(plant.dq_rad_s.data(), plant.dof());
     row.tau_Nm = status.tau_Nm;
     row.x_m = TipPosition(arm.bench);
@@ -194,6 +191,7 @@ void Simulation::Trace(int64_t k, TraceWriter* trace) {
     row.sigma_min = status.sigma_min;
     row.manipulability = status.manipulability;
     row.subtask_error_rad_s = status.subtask_error_rad_s;
+    row.clearance_m = ClearanceOf(arm.node.controller().arm(), row.q_rad);
     row.synced = arm.node.controller().estimator().synced();
     trace->Arm(i, row);
   }
@@ -240,11 +238,8 @@ RunMetrics Simulation::Result() const {
     result.torque_max_Nm = arm.torque_max_Nm;
     result.saturated_ticks = arm.node.controller().saturated_ticks();
     result.parameter_error = (arm.node.controller().theta_hat() - arm.theta).norm() / arm.theta.norm();
-    if (result.subtask != SubtaskKind::kNone)
-      result.subtask_rms_rad_s = Rms(arm.subtask_squares, arm.window_ticks);
-    if (result.subtask == SubtaskKind::kPosture)
-      result.posture_rms_rad = Rms(arm.posture_squares, arm.window_ticks);
     result.floor_posture_rad = arm.floor_posture_rad;
+    arm.subtask_record.WriteTo(&result);
     result.state = NameOf(arm.node.state());
     if (arm.node.fault() != FaultCause::kNone) result.faults.emplace_back(NameOf(arm.node.fault()));
     metrics.arms.push_back(std::move(result));

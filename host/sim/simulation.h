@@ -6,9 +6,9 @@
 #include "firmware/app/arm_node.h"
 #include "hil/emulated_arm.h"
 #include "hil/tracking_record.h"
-#include "host/metrics.h"
 #include "host/sim/trace_writer.h"
 #include "host/sim/virtual_network.h"
+#include "host/subtask_record.h"
 
 namespace armada {
 
@@ -26,10 +26,9 @@ class Simulation {
     ArmNode node;
     EmulatedArm bench;
     TrackingRecord record;
+    SubtaskRecord subtask_record;
     ParameterVector theta;  ///< true parameters
     EstimatorRms estimator_squares{};
-    double subtask_squares = 0.0;
-    double posture_squares = 0.0;
     int64_t window_ticks = 0;
     double torque_max_Nm = 0.0;
     JointVector floor_posture_rad{};

@@ -54,7 +54,9 @@ TraceWriter::TraceWriter(const std::string& directory, const FleetConfig& fleet)
     PutNames(file, "xhat", "_m", m);
     PutNames(file, "vhat", "_m_s", m);
     PutNames(file, "ahat", "_m_s2", m);
-    std::fputs(",error_m,sigma_min,manipulability,subtask_rad_s,synced\n", file);
+    std::fputs(",error_m,sigma_min,manipulability,subtask_rad_s,synced", file);
+    has_obstacles_.push_back(fleet.arms[i].arm.obstacle_count > 0);
+    std::fputs(has_obstacles_[i] ? ",clearance_m\n" : "\n", file);
   }
 }
 
@@ -77,8 +79,10 @@ void TraceWriter::Arm(size_t index, const TraceRow& row) {
   Put(file, row.zeta.x_m);
   Put(file, row.zeta.v_m_s);
   Put(file, row.zeta.a_m_s2);
-  std::fprintf(file, ",%.9g,%.9g,%.9g,%.9g,%d\n", row.error_m, row.sigma_min, row.manipulability,
+  std::fprintf(file, ",%.9g,%.9g,%.9g,%.9g,%d", row.error_m, row.sigma_min, row.manipulability,
                row.subtask_error_rad_s, row.synced ? 1 : 0);
+  if (has_obstacles_[index]) std::fprintf(file, ",%.9g", row.clearance_m);
+  std::fputc('\n', file);
 }
 
 bool TraceWriter::Close() {

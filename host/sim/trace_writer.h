@@ -21,6 +21,7 @@ struct TraceRow {
   double manipulability = 0.0;
   double subtask_error_rad_s = 0.0;
   bool synced = false;
+  double clearance_m = 0.0;  ///< written for an arm with obstacles only
 };
 
 /// Writes the CSV files of a run: leader.csv and arm_<id>.csv, one row a tick (docs/metrics.md lists the
@@ -48,6 +49,7 @@ class TraceWriter {
   std::string error_;
   File leader_;
   std::vector<File> arms_;
+  std::vector<bool> has_obstacles_;  ///< by arm
 };
 
 }  // namespace armada

@@ -68,6 +68,14 @@ TEST(PostureError, AsPrintedCountsWholeTurns) {
   EXPECT_DOUBLE_EQ(ErrorOf(config, PlanarArm(PaperArm(6)), JointVector{{0.3, 5.0, 0.4}}), -4.0);
 }
 
+TEST(PostureDistance, IsThatFromTheNearestGoal) {
+  SubtaskConfig config = Posture(2, 1.0);
+  const JointVector q{{0.3, 1.1 - 2.0 * kTurn, 0.4}};
+  EXPECT_NEAR(PostureDistance(config, PaperArm(6), q), 0.1, 1e-12);
+  config.form = PostureForm::kPrinted;
+  EXPECT_NEAR(PostureDistance(config, PaperArm(6), q), 2.0 * kTurn - 0.1, 1e-12);
+}
+
 TEST(ExactPosture, MovesTheJointItselfWhateverTheMaintaskDoes) {
   RandomArms random(2);
   int checked = 0;
@@ -133,10 +141,10 @@ Lap RunLap(ClosedLoop& loop, const SubtaskConfig& subtask, RandomArms& random) {
     loop.set_disturbance(random.Numbers(3, 40.0));
     loop.Tick();
     const JointVector q = FromPlant(loop.plant(), loop.plant().q_rad);
-    const int j = subtask.joint - 1;
-    lap.worst_rad = std::max(lap.worst_rad, std::abs(std::remainder(q[j] - subtask.goal_rad, kTurn)));
+    const PlanarArm& arm = loop.controller().arm();
+    lap.worst_rad = std::max(lap.worst_rad, PostureDistance(subtask, arm.config(), q));
     if (tick % 20 > 0) continue;
-    const SelfMotion motion = FollowSelfMotion(loop.controller().arm(), q, j);
+    const SelfMotion motion = FollowSelfMotion(arm, q, subtask.joint - 1);
     lap.admitted = lap.admitted && motion.ContainsModuloTurns(subtask.goal_rad);
   }
   return lap;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "host/check.h"
@@ -222,6 +223,63 @@ TEST(PathCheck, LimitBelowTheNeedIsAWarning) {
   const CheckResult result = BuildCheck(scenario);
   EXPECT_TRUE(Mentions(result, Severity::kWarning, "arm 2: joint 2 needs"));
   EXPECT_EQ(result.arms[1].path->WorstJoint(), 1u);
+}
+
+/// The paper's scenario with a posture for arm 6.
+ScenarioConfig WithPosture(int joint, double goal_rad) {
+  ScenarioConfig scenario = PaperScenario();
+  SubtaskConfig& subtask = scenario.fleet.arms[5].control.subtask;
+  subtask.kind = SubtaskKind::kPosture;
+  subtask.joint = joint;
+  subtask.goal_rad = goal_rad;
+  subtask.gain = 9.0;
+  return scenario;
+}
+PostureCheck CheckOfPosture(int joint, double goal_rad) {
+  const ScenarioConfig scenario = WithPosture(joint, goal_rad);
+  return CheckPosture(scenario, scenario.fleet.arms[5], LeaderPath(scenario.leader));
+}
+
+// The leader is 1.38 to 2.18 m from the base; links of 0.8, 1.1 and 1.4 m.
+TEST(PostureCheck, OfArm6IsAttainableFromEveryStart) {
+  const PostureCheck check = CheckOfPosture(2, 1.0);
+  EXPECT_TRUE(check.attainable());
+  EXPECT_TRUE(check.from_every_start());
+  EXPECT_EQ(check.stretched, 1.0);  // 1.9 m is at most 1.4 m from each of those radii
+  EXPECT_GT(check.folded, 0.1);     // 0.3 m is so below 1.7 m only
+  EXPECT_LT(check.folded, 0.9);
+}
+
+TEST(PostureCheck, AJointThatTheLeaderTakesAlongHasItsGoalOnAShareOfThePath) {
+  // Folded second joint: within 1.7 m of the base.
+  const PostureCheck check = CheckOfPosture(2, std::numbers::pi);
+  EXPECT_FALSE(check.attainable());
+  EXPECT_EQ(check.at_goal, check.folded);
+  // First link away from the leader: 0.8 m and the radius within 2.5 m.
+  EXPECT_LT(CheckOfPosture(1, 0.8 + std::numbers::pi).at_goal, 0.9);
+  EXPECT_EQ(CheckOfPosture(1, 0.8).at_goal, 1.0);
+}
+
+TEST(PostureCheck, WhatTheJointCannotDoIsAWarning) {
+  EXPECT_FALSE(Mentions(BuildCheck(WithPosture(2, 1.0)), Severity::kWarning, "arm 6: joint 2"));
+  EXPECT_TRUE(Mentions(BuildCheck(WithPosture(3, 1.5)), Severity::kWarning,
+                       "arm 6: joint 3 comes to its posture from the other side only while"));
+  EXPECT_TRUE(Mentions(BuildCheck(WithPosture(3, 0.2)), Severity::kWarning,
+                       "arm 6: joint 3 can be at its posture of 0.200 rad on"));
+  ScenarioConfig near = WithPosture(3, 1.9);  // within 1.7 m, where 2.5 m of stretched links do not fit
+  near.leader.axes = {{1.0, 0.1, 0.5, 0.0}, {1.1, 0.1, 0.5, M_PI / 2}};
+  EXPECT_TRUE(Mentions(BuildCheck(near), Severity::kWarning, "it can neither stretch nor fold"));
+}
+
+TEST(PathCheck, TooLittleRoomBesideAnObstacleIsAWarning) {
+  ScenarioConfig scenario = PaperScenario();
+  PlanarArmConfig& arm = scenario.fleet.arms[5].arm;
+  EXPECT_FALSE(Mentions(BuildCheck(scenario), Severity::kWarning, "arm 6: comes to"));
+  arm.obstacle_count = 1;
+  arm.obstacles[0] = {ObstacleKind::kDisc, 1.7, 1.3, 0.05, 0.0};  // on the leader's path
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kWarning, "mm from an obstacle on the leader's path"));
+  scenario.fleet.arms[5].control.subtask.avoidance.enabled = false;
+  EXPECT_FALSE(Mentions(BuildCheck(scenario), Severity::kWarning, "mm from an obstacle"));
 }
 
 TEST(BusLoad, CountsWhatAJointAsksAnswersAndGetsEachTick) {

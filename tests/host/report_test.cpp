@@ -230,6 +230,34 @@ TEST_F(Report, AScriptRunByHandDrawsTheSameAgain) {
   EXPECT_EQ(ReadText(Drawn("paths.svg")), before);
 }
 
+TEST(ReportOfSpareJoints, DrawsGoalsLimitsAndClearances) {
+  TempDir dir;
+  WriteSample(dir.path());
+  Json metrics = SampleMetrics();
+  Json& arm_6 = metrics["arms"][2];
+  arm_6["posture_joint"] = 2;
+  arm_6["posture_goal_rad"] = 0.875 - 2.0 * M_PI;  // a whole turn from where the joint is
+  arm_6["posture_max_rad"] = 0.125;
+  arm_6["clearance_min_m"] = 0.0625;
+  arm_6["clearance_wanted_m"] = 0.03125;
+  Json& arm_1 = metrics["arms"][0];
+  arm_1["limit_margin_min_rad"] = 0.75;
+  arm_1["q_min_rad"] = {-1.25, -1.5};
+  arm_1["q_max_rad"] = nullptr;
+  WriteMetrics(dir.path(), metrics);
+  std::string error;
+  ASSERT_TRUE(WriteReport(dir.path(), &error)) << error;
+  const auto script = [&](const char* name) { return ReadText(dir.path() / "report" / name); };
+  EXPECT_NE(script("posture_arm_6.gp").find("0.875 with lines"), std::string::npos);
+  EXPECT_NE(script("limits_arm_1.gp").find("-1.25 with lines"), std::string::npos);
+  EXPECT_NE(script("limits_arm_1.gp").find("../without_subtask/arm_1.csv"), std::string::npos);
+  EXPECT_NE(script("clearance_arm_6.gp").find("0.03125 with lines"), std::string::npos);
+  const std::string page = ReadText(dir.path() / "report.html");
+  EXPECT_NE(page.find("Largest distance from the goal in the window: 0.125 rad"), std::string::npos);
+  EXPECT_NE(page.find("Least distance from a limit in the window: 0.75 rad"), std::string::npos);
+  EXPECT_NE(page.find("0.0625 m with avoidance and -0.25 m without it"), std::string::npos);
+}
+
 TEST(ReportOfASimulation, NeedsNeitherTwinNorTiming) {
   TempDir dir;
   WriteRun(dir.path(), true);

@@ -43,7 +43,7 @@ inline void WriteTrace(const fs::path& path, const SampleArm& arm, bool with_sub
     for (int joint = 1; joint <= arm.joints; ++joint) csv << ',' << column << joint << unit;
   }
   csv << ",ignored,x1_m,x2_m,v1_m_s,v2_m_s,xhat1_m,xhat2_m,vhat1_m_s,vhat2_m_s,ahat1_m_s2,ahat2_m_s2,error_m,"
-         "sigma_min,manipulability,subtask_rad_s,synced\n";
+         "sigma_min,manipulability,subtask_rad_s,synced,clearance_m\n";
   const int ticks = arm.diverged ? 60 : kTicks;
   for (int tick = 0; tick < ticks; ++tick) {
     const double t_s = tick * kTick_s;
@@ -60,7 +60,8 @@ inline void WriteTrace(const fs::path& path, const SampleArm& arm, bool with_sub
     csv << ",a word," << 1.2 + 0.5 * s + offset_m << ',' << 1.3 + 0.3 * c << ',' << 1.57 * c + runaway << ','
         << -0.94 * s - runaway << ',' << 1.2 + 0.5 * s << ',' << 1.3 + 0.3 * c << ',' << 1.57 * c << ','
         << -0.94 * s << ',' << -4.9 * s << ',' << -2.96 * c << ',' << error_m << ",0.5,"
-        << (with_subtask ? 2.0 : 1.0) + 0.2 * c << ",0.01," << (t_s > 0.5) << '\n';
+        << (with_subtask ? 2.0 : 1.0) + 0.2 * c << ",0.01," << (t_s > 0.5) << ','
+        << (with_subtask ? 0.0625 : -0.25) << '\n';
   }
   WriteText(path, csv.str());
 }
