@@ -12,6 +12,8 @@
 namespace armada {
 namespace {
 
+constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
+
 ObstacleConfig RandomObstacle(RandomArms& random) {
   ObstacleConfig obstacle;
   obstacle.kind = random.In(0.0, 1.0) < 0.5 ? ObstacleKind::kDisc : ObstacleKind::kHalfPlane;
@@ -246,7 +248,7 @@ Kept FollowTheLeader(const PlanarArmConfig& config, const SubtaskConfig& subtask
   constexpr double kStep_s = 2e-3;
   for (double t_s = 0.0; t_s < 8.0; t_s += kStep_s) {
     const auto velocity = [&](double at_s, const JointVector& at) {
-      return ReferenceVelocity({}, {}, subtask, arm, at, PaperLeader(at_s), true);
+      return ReferenceVelocity({}, kApproach, {}, subtask, arm, at, PaperLeader(at_s), true);
     };
     const JointVector middle = q + 0.5 * kStep_s * velocity(t_s, q);
     q += kStep_s * velocity(t_s + 0.5 * kStep_s, middle);
