@@ -13,9 +13,9 @@ const ArmMetrics& ArmOf(const RunMetrics& metrics, int id) {
   return metrics.arms.front();
 }
 
-// Seeds 4, 9 and 28 are of those that the printed form leaves a whole turn away.
+// Seeds 6, 9 and 28 are of those that the printed form leaves a whole turn away.
 TEST(PaperScenario, Arm6GoesToItsPostureAndStaysThere) {
-  for (const uint64_t seed : {1U, 4U, 9U, 28U}) {
+  for (const uint64_t seed : {1U, 6U, 9U, 28U}) {
     const RunMetrics metrics = Simulate("paper", seed, {"seconds=12.0", "window_start_s=8.0"});
     const ArmMetrics& arm = ArmOf(metrics, 6);
     ASSERT_TRUE(arm.posture.has_value());
@@ -28,7 +28,7 @@ TEST(PaperScenario, Arm6WithTheFormAsPrintedIsCarriedOffOrATurnAway) {
   const std::vector<std::string> printed = {"seconds=12.0", "window_start_s=8.0",
                                             "arm.6.control.subtask.form=printed"};
   EXPECT_GT(ArmOf(Simulate("paper", 1, printed), 6).posture->max_rad, 0.04);
-  EXPECT_GT(ArmOf(Simulate("paper", 4, printed), 6).posture->max_rad, 2.0);
+  EXPECT_GT(ArmOf(Simulate("paper", 9, printed), 6).posture->max_rad, 2.0);
 }
 
 TEST(PaperScenario, Arm7RaisesItsManipulability) {
