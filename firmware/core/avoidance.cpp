@@ -42,8 +42,8 @@ void ForEachLimit(const PlanarArmConfig& arm, const JointVector& q, Visit visit)
 
 Barriers BarriersOf(const AvoidanceConfig& config, const PlanarArm& arm, const JointVector& q,
                     const PlanarArm::Posture& at) {
-  const Eigen::Index count =
-      arm.config().q_min_rad.size() + arm.config().q_max_rad.size() + arm.dof() * arm.config().obstacle_count;
+  const Eigen::Index pairs = Eigen::Index{arm.dof()} * arm.config().obstacle_count;
+  const Eigen::Index count = arm.config().q_min_rad.size() + arm.config().q_max_rad.size() + pairs;
   Barriers barriers{BoundedVector<kMaxBarriers>(count),
                     BoundedMatrix<kMaxDof, kMaxBarriers>::Zero(arm.dof(), count)};
   Eigen::Index next = 0;

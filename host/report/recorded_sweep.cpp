@@ -42,10 +42,13 @@ RecordedSweep LoadRecordedSweep(const std::filesystem::path& path) {
       sweep.settled_s.push_back(FigureOf(of, arm.at("settled_s")));
       sweep.rms_mm.push_back(FigureOf(of, arm.at("rms_mm")));
       sweep.max_mm.push_back(FigureOf(of, arm.at("max_mm")));
+      if (arm.contains("over_floor")) sweep.over_floor.push_back(FigureOf(of, arm.at("over_floor")));
     }
     sweep.settled_s.push_back(FigureOf("fleet", sweep.summary.at("fleet_settled_s")));
     sweep.rms_mm.push_back(FigureOf("fleet", sweep.summary.at("fleet_rms_all_mm")));
     sweep.max_mm.push_back(FigureOf("fleet", sweep.summary.at("fleet_max_mm")));
+    if (!sweep.over_floor.empty())
+      sweep.over_floor.push_back(FigureOf("fleet", sweep.summary.at("fleet_over_floor")));
     return sweep;
   } catch (const nlohmann::json::exception& problem) {
     throw ReportError(path.string() + ": " + problem.what());

@@ -30,6 +30,7 @@ struct RecordedSweep {
   double count = 0.0;  ///< seeds
   /// Of each arm, the fleet's last.
   std::vector<SweepFigure> settled_s, rms_mm, max_mm;
+  std::vector<SweepFigure> over_floor;  ///< RMS by the unavoidable one; empty without `--floor`
 };
 
 /// Throws ReportError that names the file and what is missing or wrong.

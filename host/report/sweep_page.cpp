@@ -24,8 +24,13 @@ std::string Verdict(const RecordedSweep& sweep) {
   std::string html = std::string("<div class=\"verdict") + (ok ? "" : " bad") + "\"><h1>" +
                      Text(summary.at("scenario")) + ": <b>" + Text(summary.at("ok_count")) + " of " + count +
                      " fleets ok</b></h1>";
-  if (!summary.at("fleet_rms_mm").is_null())
-    html += "<p>RMS of the fleets that are ok: " + Text(summary.at("fleet_rms_mm")) + " mm.</p>";
+  if (!summary.at("fleet_rms_mm").is_null()) {
+    html += "<p>RMS of the fleets that are ok: " + Text(summary.at("fleet_rms_mm")) + " mm";
+    if (summary.contains("floor_rms_mm"))
+      html += ", " + Text(summary.at("over_floor")) + " times the unavoidable " +
+              Text(summary.at("floor_rms_mm")) + " mm";
+    html += ".</p>";
+  }
   html += "</div>\n<dl>";
   const auto fact = [&](const std::string& name, const std::string& value) {
     html += "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>";
@@ -39,6 +44,7 @@ std::string Verdict(const RecordedSweep& sweep) {
 }
 
 std::string Percentiles(const std::string& title, const std::vector<SweepFigure>& figures) {
+  if (figures.empty()) return "";
   std::string html = "<h2>" + title + "</h2>\n<div class=\"wide\"><table><thead><tr><th scope=\"col\"></th>";
   for (const char* head : {"seeds", "median", "95 %", "99 %", "99.9 %", "worst", "worst seed"})
     html += std::string("<th scope=\"col\">") + head + "</th>";
@@ -103,6 +109,7 @@ std::string SweepPage(const RecordedSweep& sweep, const std::vector<Figure>& fig
   std::string html = PageOpening("Armada: sweep of " + Text(sweep.summary.at("scenario"))) + Verdict(sweep) +
                      Percentiles("Settling time [s]", sweep.settled_s) +
                      Percentiles("RMS error [mm]", sweep.rms_mm) +
+                     Percentiles("RMS error by the unavoidable one", sweep.over_floor) +
                      Percentiles("Largest error [mm]", sweep.max_mm) + WorstSeeds(sweep) + Failures(sweep) +
                      "<h2>Figures</h2>\n";
   for (size_t i = 0; i < figures.size(); ++i) html += FigureElement(figures[i], i + 1, folder);

@@ -13,7 +13,7 @@ class LogHistogram {
   static constexpr int kBinsPerDecade = 100;
   static constexpr int kDecades = 9;  ///< to either side of 1; what lies beyond counts in the last bin
 
-  LogHistogram() : counts_(2 * kDecades * kBinsPerDecade) {}
+  LogHistogram() : counts_(size_t{2} * kDecades * kBinsPerDecade) {}
 
   void Add(double value) { ++counts_[IndexOf(value)]; }
 

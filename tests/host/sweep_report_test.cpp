@@ -91,6 +91,23 @@ TEST(SweepReport, NamesTheSeedsThatAreNotOk) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 
+TEST(SweepReport, SetsTheErrorBesideWhatIsUnavoidable) {
+  const fs::path folder = Folder();
+  std::vector<SeedResult> results;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    results.push_back(ResultOf(seed, 0.75, true));
+    results.back().floor_rms_mm = results.back().arms[0].floor_rms_mm = 0.5;
+  }
+  std::string error;
+  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(results), folder), &error)) << error;
+  const std::string page = ReadText(folder / "box.html");
+  for (const char* text :
+       {"0.750 mm, 1.50 times the unavoidable 0.500 mm", "<h2>RMS error by the unavoidable one</h2>"})
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(1, 9, 1), folder), &error)) << error;
+  EXPECT_EQ(ReadText(folder / "box.html").find("unavoidable"), std::string::npos);
+}
+
 TEST(SweepReport, LeavesOutWhatNoSeedHas) {
   const fs::path folder = Folder();
   std::string error;

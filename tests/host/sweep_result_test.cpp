@@ -74,7 +74,7 @@ TEST(Sweep, WithFloorsMergesToTheWholeByteForByte) {
       Read({Written(WithFloors(SweepOf(1, 10, 2), 0.4), "1"),
             Written(WithFloors(SweepOf(2, 10, 2), 0.4), "2"), Written(SweepOf(12, 12, 1), "without")});
   std::string error;
-  const auto merged = Merge(Read({PathOf("1"), PathOf("2")}), &error);
+  const auto merged = Merge(Read({Written(SweepOf(9, 8, 1), "none"), PathOf("1"), PathOf("2")}), &error);
   ASSERT_TRUE(merged.has_value()) << error;
   const std::string whole = Bytes(Written(WithFloors(SweepOf(1, 10, 1), 0.4), "whole"));
   EXPECT_EQ(Bytes(Written(*merged, "merged")), whole);
