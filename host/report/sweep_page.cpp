@@ -26,9 +26,10 @@ std::string Verdict(const RecordedSweep& sweep) {
                      " fleets ok</b></h1>";
   if (!summary.at("fleet_rms_mm").is_null()) {
     html += "<p>RMS of the fleets that are ok: " + Text(summary.at("fleet_rms_mm")) + " mm";
-    if (summary.contains("floor_rms_mm"))
+    if (summary.contains("floor_rms_mm")) {
       html += ", " + Text(summary.at("over_floor")) + " times the unavoidable " +
               Text(summary.at("floor_rms_mm")) + " mm";
+    }
     html += ".</p>";
   }
   html += "</div>\n<dl>";

@@ -179,10 +179,8 @@ TEST(PostureOfArm6, ArrivesWhereverTheSelfMotionAdmitsItsGoalForTheWholeLap) {
     RunDisturbed(loop, 9.0, random);
     const Lap lap = RunLap(loop, subtask, random);
     (lap.admitted ? admitted : refused) += 1;
-    if (lap.admitted)
-      EXPECT_LT(lap.worst_rad, 0.03) << "joint " << subtask.joint << " to " << subtask.goal_rad;
-    else
-      EXPECT_GT(lap.worst_rad, 0.03) << "joint " << subtask.joint << " to " << subtask.goal_rad;
+    EXPECT_EQ(lap.worst_rad < 0.03, lap.admitted)
+        << "joint " << subtask.joint << " to " << subtask.goal_rad << ": " << lap.worst_rad << " rad";
   }
   EXPECT_GT(admitted, 20);
   EXPECT_GT(refused, 20);
