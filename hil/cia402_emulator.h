@@ -59,7 +59,7 @@ class Cia402Emulator final : public EmulatedDrive {
   Cia402Node node_;
   Cia402Machine machine_;
   JointSensor sensor_;
-  DelayedTorque torque_;
+  DelayedTorque<> torque_;
   double target_Nm_ = 0.0;  ///< joint side, last given to `torque_`
   bool braking_ = false;
   double brake_start_s_ = 0.0;

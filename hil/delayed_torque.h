@@ -7,13 +7,17 @@
 
 namespace armada {
 
-/// Torque of a drive that follows its commands one latency later: constant from one change to the next.
+/// Torque of a drive, or torques of an arm's drives, that follow their commands one latency later: constant
+/// from one change to the next, zero before the first.
+template <class Torque = double>
 class DelayedTorque {
  public:
   explicit DelayedTorque(double latency_s) : latency_s_(latency_s) {}
 
+  double latency_s() const { return latency_s_; }
+
   /// The torque is `tau_Nm` from one latency after `t_s` on. Times do not decrease.
-  void Schedule(double t_s, double tau_Nm) {
+  void Schedule(double t_s, const Torque& tau_Nm) {
     Apply(t_s);
     // More commands within one latency than there is room for: the last of them wins.
     if (count_ == pending_.size()) --count_;
@@ -22,7 +26,7 @@ class DelayedTorque {
 
   /// The power stage goes off: no torque from now on, and nothing that was under way.
   void Cut() {
-    tau_Nm_ = 0.0;
+    tau_Nm_ = {};
     count_ = 0;
   }
 
@@ -35,8 +39,8 @@ class DelayedTorque {
   }
 
   /// Torque at `t_s`; a change at that very time has happened.
-  double At(double t_s) const {
-    double tau_Nm = tau_Nm_;
+  Torque At(double t_s) const {
+    Torque tau_Nm = tau_Nm_;
     for (size_t i = 0; i < count_ && pending_[i].t_s <= t_s; ++i) tau_Nm = pending_[i].tau_Nm;
     return tau_Nm;
   }
@@ -52,12 +56,12 @@ class DelayedTorque {
  private:
   struct Change {
     double t_s = 0.0;
-    double tau_Nm = 0.0;
+    Torque tau_Nm{};
   };
 
   double latency_s_;
-  double tau_Nm_ = 0.0;  ///< in force before the first of the pending changes
-  std::array<Change, 8> pending_{};
+  Torque tau_Nm_{};  ///< in force before the first of the pending changes
+  std::array<Change, 16> pending_{};
   size_t count_ = 0;
 };
 

@@ -48,7 +48,7 @@ class MitEmulator final : public EmulatedDrive {
 
   JointDriveConfig joint_;
   JointSensor sensor_;
-  DelayedTorque torque_;
+  DelayedTorque<> torque_;
   double timeout_s_;  ///< 0: off
   uint32_t control_mode_ = damiao::kMitMode;
   mit::Command command_;

@@ -73,7 +73,7 @@ class MoteusEmulator final : public EmulatedDrive {
 
   JointDriveConfig joint_;
   JointSensor sensor_;
-  DelayedTorque torque_;
+  DelayedTorque<> torque_;
   JointSensor::Reading reading_;  ///< for the frame being answered
   moteus::Mode mode_ = moteus::Mode::kStopped;
   uint8_t fault_ = 0;

@@ -44,7 +44,7 @@ class ODriveEmulator final : public EmulatedDrive {
   odrive::Firmware firmware_;
   double watchdog_s_;
   JointSensor sensor_;
-  DelayedTorque torque_;
+  DelayedTorque<> torque_;
 
   odrive::AxisState state_ = odrive::AxisState::kIdle;
   odrive::ControllerMode mode_;

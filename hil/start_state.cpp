@@ -54,7 +54,7 @@ ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, 
   for (TaskVector* part : {&zeta.x_m, &zeta.v_m_s, &zeta.a_m_s2}) {
     for (double& element : *part) element += draw(-config.zeta_range, config.zeta_range);
   }
-  ParameterVector& theta_hat = start.controller.learned.theta_hat;
+  ParameterVector& theta_hat = start.controller.theta_hat;
   theta_hat.resize(arm.parameter_count());
   for (double& element : theta_hat) element = draw(0.0, config.theta_hat_max);
   return start;

@@ -11,7 +11,7 @@
 namespace armada {
 
 ArmInitialState NominalInitialState(const ArmEntry& arm) {
-  return {Zeta::Zero(PlanarArm::kTaskDim), {PlanarArm(arm.arm).Theta()}};
+  return {Zeta::Zero(PlanarArm::kTaskDim), PlanarArm(arm.arm).Theta()};
 }
 
 std::optional<ArmInitialState> LoadInitialState(const std::string& path, const ArmEntry& arm,
@@ -19,7 +19,7 @@ std::optional<ArmInitialState> LoadInitialState(const std::string& path, const A
   const auto root = LoadToml(path, errors);
   if (!root) return std::nullopt;
   InitialStateFile file;
-  file.theta_hat = NominalInitialState(arm).learned.theta_hat;
+  file.theta_hat = NominalInitialState(arm).theta_hat;
   const Eigen::Index parameter_count = file.theta_hat.size();
   const size_t errors_before = errors->size();
   ReadConfig(*root, &file, errors);
@@ -35,11 +35,11 @@ std::optional<ArmInitialState> LoadInitialState(const std::string& path, const A
   require_size("zeta_a_m_s2", file.zeta_a_m_s2.size(), PlanarArm::kTaskDim);
   require_size("theta_hat", file.theta_hat.size(), parameter_count);
   if (errors->size() > errors_before) return std::nullopt;
-  return ArmInitialState{{file.zeta_x_m, file.zeta_v_m_s, file.zeta_a_m_s2}, {file.theta_hat}};
+  return ArmInitialState{{file.zeta_x_m, file.zeta_v_m_s, file.zeta_a_m_s2}, file.theta_hat};
 }
 
 bool WriteInitialState(const ArmInitialState& state, const std::string& path, std::string* error) {
-  InitialStateFile values{state.zeta.x_m, state.zeta.v_m_s, state.zeta.a_m_s2, state.learned.theta_hat};
+  InitialStateFile values{state.zeta.x_m, state.zeta.v_m_s, state.zeta.a_m_s2, state.theta_hat};
   std::ofstream file(path);
   WriteToml(&values, file);
   if (file.flush()) return true;

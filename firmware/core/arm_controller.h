@@ -50,7 +50,7 @@ struct ArmControllerConfig {
 /// What is not configuration but the start of an arm's state: zeta_i(0) and theta_hat_i(0).
 struct ArmInitialState {
   Zeta zeta;
-  Learned learned;
+  ParameterVector theta_hat;
 };
 
 /// What one tick sees. `tick_s` lies on the period's grid; the sample was taken at `sample_s`, at or after
@@ -106,8 +106,6 @@ class ArmController {
   double zeta_time_s() const { return zeta_time_s_; }
   const Estimator& estimator() const { return estimator_; }
   const ParameterVector& theta_hat() const;
-  /// What has been learned so far; without P_theta where the law has none.
-  Learned learned() const;
   JointVector d_hat_Nm() const;
   int saturated_ticks() const { return gate_.saturated_ticks(); }
   const ArmStatus& status() const { return status_; }

@@ -97,16 +97,14 @@ struct Springs {
 
 /// Convex and piecewise quadratic: Newton's steps end at the minimum as soon as they no longer change which
 /// springs act, mostly after two.
-JointVector Minimize(const Springs& springs) {
-  constexpr int kSteps = 10;
-  constexpr int kHalvings = 5;
-  constexpr double kSmall_rad_s = 1e-9;
+JointVector Minimize(const AvoidanceConfig& config, const Springs& springs) {
   JointVector phi = springs.wanted;
   double cost = springs.Cost(phi);
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < config.steps; ++i) {
     JointVector step = springs.NewtonStep(phi);
-    if (!(step.cwiseAbs().maxCoeff() > kSmall_rad_s)) break;
-    for (int halving = 0; halving < kHalvings && springs.Cost(phi + step) > cost; ++halving) step *= 0.5;
+    if (!(step.cwiseAbs().maxCoeff() > config.tolerance_rad_s)) break;
+    for (int halving = 0; halving < config.halvings && springs.Cost(phi + step) > cost; ++halving)
+      step *= 0.5;
     phi += step;
     cost = springs.Cost(phi);
   }
@@ -126,7 +124,7 @@ JointVector Avoid(const AvoidanceConfig& config, const PlanarArm& arm, const Joi
   const BoundedMatrix<kMaxDof, kMaxBarriers> rows = null_space.transpose().lazyProduct(barriers.gradient);
   const BoundedVector<kMaxBarriers> least =
       -config.rate_1_s * barriers.distance - barriers.gradient.transpose().lazyProduct(dq_main);
-  JointVector phi = Minimize({rows, least, wanted, config.weight});
+  JointVector phi = Minimize(config, {rows, least, wanted, config.weight});
   const double largest = phi.cwiseAbs().maxCoeff();
   if (largest > config.phi_max_rad_s) phi *= config.phi_max_rad_s / largest;
   return phi;

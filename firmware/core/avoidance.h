@@ -22,6 +22,9 @@ struct AvoidanceConfig {
   double rate_1_s = 5.0;
   double weight = 1000.0;
   double phi_max_rad_s = 6.0;
+  int steps = 10;
+  int halvings = 5;
+  double tolerance_rad_s = 1e-9;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -41,6 +44,10 @@ struct AvoidanceConfig {
     parameter({"phi_max_rad_s", "rad/s", 1e-3, 100,
                "phi with avoidance is scaled to at most this, in the largest component"},
               phi_max_rad_s);
+    parameter({"steps", "", 1, 100, "bound on Newton's steps to phi"}, steps);
+    parameter({"halvings", "", 0, 50, "bound on halvings of one of them until it is a gain"}, halvings);
+    parameter({"tolerance_rad_s", "rad/s", 0, 1e-3, "they end when no component of phi moves by more"},
+              tolerance_rad_s);
   }
 };
 

@@ -67,12 +67,6 @@ struct ControlConfig {
   }
 };
 
-/// What a run leaves of an arm's dynamics: the next one may start from it.
-struct Learned {
-  ParameterVector theta_hat;
-  ParameterMatrix P_theta = {};  ///< its covariance; empty: AdaptationConfig::initial_deviation
-};
-
 /// What a local law sees in one tick. q, dq and zeta are of the same instant, the sample's.
 struct LawInput {
   JointVector q_rad;

@@ -11,13 +11,12 @@ double Sign(double value) {
 }
 
 // One block (x, v or a) of (1.9), explicit: a step of h beta against the sign of the disagreement. False when
-// out of the band: explicit sgn chatters by a step, and so does each neighbour, while the leader moves, so it
-// is four steps wide.
+// out of the band.
 bool ExplicitStep(const TaskVector& mean, double h_beta, double band, TaskVector& state) {
   bool in_band = true;
   for (Eigen::Index c = 0; c < state.size(); ++c) {
     const double disagreement = state[c] - mean[c];
-    if (std::abs(disagreement) > 4.0 * band) in_band = false;
+    if (std::abs(disagreement) > band) in_band = false;
     state[c] -= h_beta * Sign(disagreement);
   }
   return in_band;
@@ -97,7 +96,7 @@ void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s
     const auto step = [&](const TaskVector& f_part, const TaskVector& mean_part, double beta,
                           TaskVector& part) {
       return config_.kind == EstimatorKind::kPaper
-                 ? ExplicitStep(mean_part, step_s * beta, band_s * beta, part)
+                 ? ExplicitStep(mean_part, step_s * beta, config_.chatter_bands * band_s * beta, part)
                  : ImplicitStep(f_part, mean_part, since_s * beta, band_s * beta, part);
     };
     const bool x_in_band = step(f.x_m, mean.x_m, config_.beta_1_m_s, zeta_.x_m);

@@ -22,6 +22,7 @@ struct EstimatorConfig {
   int desync_ticks = 20;
   double age_max_s = 0.2;
   bool leaderless = false;
+  double chatter_bands = 4.0;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -46,6 +47,10 @@ struct EstimatorConfig {
     parameter({"leaderless", "", 0, 1,
                "Corollary 2: no leader; the arms agree on a point (v = a = 0) and meet there"},
               leaderless);
+    parameter({"chatter_bands", "", 1, 100,
+               "paper: width of the band in steps of h beta: explicit sgn chatters by one, and so does each "
+               "neighbour, while the leader moves"},
+              chatter_bands);
   }
 };
 

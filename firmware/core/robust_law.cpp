@@ -6,25 +6,23 @@
 namespace armada {
 namespace {
 
-ParameterMatrix CovarianceAtStart(const AdaptationConfig& config, const Learned& learned) {
-  const Eigen::Index p = learned.theta_hat.size();
+ParameterMatrix CovarianceAtStart(const AdaptationConfig& config, Eigen::Index p) {
   if (config.kind != AdaptationKind::kKalman && config.kind != AdaptationKind::kBoth)
     return ParameterMatrix::Zero(p, p);
-  if (learned.P_theta.size() > 0) return learned.P_theta;
   return ParameterMatrix::Identity(p, p) * (config.initial_deviation * config.initial_deviation);
 }
 
 }  // namespace
 
-RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Learned& learned,
+RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
                      const JointVector& torque_limit_Nm, double sample_to_torque_s)
     : config_(config),
       arm_(arm),
       torque_limit_Nm_(torque_limit_Nm),
       latency_s_(sample_to_torque_s),
-      theta_hat_(learned.theta_hat),
+      theta_hat_(theta_hat),
       filter_(config.sensor, config.disturbance, config.adaptation,
-              CovarianceAtStart(config.adaptation, learned), arm),
+              CovarianceAtStart(config.adaptation, theta_hat.size()), arm),
       governor_(config.governor, JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
       tau_before_Nm_(JointVector::Zero(arm.dof())) {

@@ -9,9 +9,9 @@ namespace armada {
 /// Steps and their reasons: docs/equations.md.
 class RobustLaw {
  public:
-  /// learned.theta_hat is projected first; `torque_limit_Nm` is what may be sent, n components.
+  /// `theta_hat` is projected first; `torque_limit_Nm` is what may be sent, n components.
   /// `sample_to_torque_s` is the delay L that is compensated, below one period.
-  RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Learned& learned,
+  RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
             const JointVector& torque_limit_Nm, double sample_to_torque_s);
 
   /// Torque wanted over the next period, n components, not limited.
@@ -23,7 +23,6 @@ class RobustLaw {
   const ParameterVector& theta_hat() const { return theta_hat_; }
   /// dq_r of (1.5) for the start of this tick's period, before the governor.
   const JointVector& dq_r_rad_s() const { return dq_r_start_rad_s_; }
-  ParameterMatrix P_theta() const { return filter_.P_theta(); }
   const JointVector& d_hat_Nm() const { return filter_.d_hat_Nm(); }
 
  private:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace armada {
 namespace {
@@ -11,24 +10,6 @@ namespace {
 constexpr double kSameInstant_s = 1e-9;
 
 }  // namespace
-
-void DelayedTorques::Schedule(double t_s, const PlanarPlant::Joints& tau_Nm) {
-  while (changes_.size() > 1 && changes_[1].t_s <= t_s) changes_.pop_front();
-  changes_.push_back({t_s + latency_s_, tau_Nm});
-}
-
-PlanarPlant::Joints DelayedTorques::At(double t_s) const {
-  PlanarPlant::Joints tau_Nm{};
-  for (size_t i = 0; i < changes_.size() && changes_[i].t_s <= t_s; ++i) tau_Nm = changes_[i].tau_Nm;
-  return tau_Nm;
-}
-
-double DelayedTorques::NextChange(double t_s) const {
-  for (const Change& change : changes_) {
-    if (change.t_s > t_s) return change.t_s;
-  }
-  return std::numeric_limits<double>::infinity();
-}
 
 bool HeldDisturbance::Renew(double t_s, const PlanarPlant& plant) {
   const double until_s = NextChange(t_s);

@@ -1,34 +1,11 @@
 #pragma once
 
-#include <deque>
-
+#include "hil/delayed_torque.h"
 #include "hil/disturbance.h"
 
 namespace armada {
 
-/// Torques of an arm's drives, which act one latency after they were commanded, each until the next. None
-/// before the first.
-class DelayedTorques {
- public:
-  explicit DelayedTorques(double latency_s) : latency_s_(latency_s) {}
-
-  double latency_s() const { return latency_s_; }
-  /// Times do not decrease; what acted before `t_s` is forgotten.
-  void Schedule(double t_s, const PlanarPlant::Joints& tau_Nm);
-  /// A change at `t_s` itself has happened.
-  PlanarPlant::Joints At(double t_s) const;
-  /// First change after `t_s`; infinity when there is none.
-  double NextChange(double t_s) const;
-
- private:
-  struct Change {
-    double t_s = 0.0;
-    PlanarPlant::Joints tau_Nm{};
-  };
-
-  double latency_s_;
-  std::deque<Change> changes_;
-};
+using DelayedTorques = DelayedTorque<PlanarPlant::Joints>;
 
 /// The disturbance of one arm as the bench applies it: evaluated when a held value begins, at every step of
 /// the integration where none is held.

@@ -28,7 +28,7 @@ TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
   state.zeta.x_m << 0.1, -4.999999999999999;
   state.zeta.v_m_s << 1.0 / 3.0, 2.0;
   state.zeta.a_m_s2 << -1e-17, 5.0;
-  state.learned.theta_hat *= 1.0 / 7.0;
+  state.theta_hat *= 1.0 / 7.0;
   std::string error;
   ASSERT_TRUE(WriteInitialState(state, TemporaryFile(), &error)) << error;
   std::vector<ConfigError> errors;
@@ -37,7 +37,7 @@ TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
   EXPECT_EQ(read->zeta.x_m, state.zeta.x_m);
   EXPECT_EQ(read->zeta.v_m_s, state.zeta.v_m_s);
   EXPECT_EQ(read->zeta.a_m_s2, state.zeta.a_m_s2);
-  EXPECT_EQ(read->learned.theta_hat, state.learned.theta_hat);
+  EXPECT_EQ(read->theta_hat, state.theta_hat);
 }
 
 TEST(InitialState, OfAnotherArmIsRefusedWithItsLine) {

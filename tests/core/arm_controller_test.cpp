@@ -21,7 +21,7 @@ ArmControllerConfig Config(int dof, LawKind law, RandomArms& random) {
 }
 
 ClosedLoop Loop(const ArmControllerConfig& config) {
-  return ClosedLoop(config, {PaperLeader(0.0), {PlanarArm(config.arm).Theta()}}, PaperLeader);
+  return ClosedLoop(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()}, PaperLeader);
 }
 
 TEST(ArmController, BothLawsRunOnArmsOfTwoToSevenJoints) {
@@ -45,7 +45,7 @@ TEST(ArmController, NeverSendsMoreThanTheTorqueLimit) {
   for (const LawKind law : {LawKind::kPaper, LawKind::kRobust}) {
     for (int dof = 1; dof <= kMaxDof; ++dof) {
       const ArmControllerConfig config = Config(dof, law, random);
-      ArmController controller(config, {PaperLeader(0.0), {PlanarArm(config.arm).Theta()}});
+      ArmController controller(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()});
       ClosedLoop loop = Loop(config);
       for (int k = 0; k < 50; ++k) {
         ArmInput in = loop.Sample();
@@ -106,7 +106,7 @@ TEST(ArmController, NonFiniteNeighboursOrParametersEndInFaultToo) {
   EXPECT_TRUE(loop.controller().Step(in).isZero(0.0));
   EXPECT_EQ(loop.controller().status().state, ControllerState::kFault);
 
-  ArmController unknown(config, {PaperLeader(0.0), {ParameterVector::Constant(3, kNan)}});
+  ArmController unknown(config, {PaperLeader(0.0), ParameterVector::Constant(3, kNan)});
   in = Loop(config).Sample();
   EXPECT_TRUE(unknown.Step(in).isZero(0.0));
   EXPECT_EQ(unknown.status().state, ControllerState::kFault);

@@ -122,7 +122,7 @@ ClosedLoop FromTheBox(const SubtaskConfig& subtask, RandomArms& random) {
   theta_hat.array() += 2.5;
   Zeta zeta{random.Numbers<TaskVector>(2, 5.0), random.Numbers<TaskVector>(2, 5.0),
             random.Numbers<TaskVector>(2, 5.0)};
-  ClosedLoop loop(config, {zeta, {theta_hat}}, PaperLeader);
+  ClosedLoop loop(config, {zeta, theta_hat}, PaperLeader);
   loop.plant().q_rad = ToPlant(random.Numbers(3, 5.0));
   loop.plant().dq_rad_s = ToPlant(random.Numbers(3, 5.0));
   return loop;

@@ -13,7 +13,7 @@ namespace {
 // truth.
 ClosedLoop Start(const ArmControllerConfig& config, double theta_share = 1.0) {
   const ParameterVector theta = PlanarArm(config.arm).Theta();
-  ClosedLoop loop(config, {PaperLeader(0.0), {theta_share * theta}}, PaperLeader);
+  ClosedLoop loop(config, {PaperLeader(0.0), theta_share * theta}, PaperLeader);
   loop.plant().q_rad = {0.3, 1.2, 0.5};
   return loop;
 }
@@ -141,7 +141,7 @@ TEST(RobustLaw, BrakesToRestUntilTheEstimateMayBeUsed) {
 TEST(RobustLaw, ThetaHatIsProjectedFromTheStart) {
   const PlanarArm arm(PaperArm(1));
   const ControlConfig config = PaperController(PaperArm(1)).control;
-  const RobustLaw law(config, arm, {ParameterVector{{0.1, 5.0, 100.0}}}, JointVector::Constant(2, 150.0),
+  const RobustLaw law(config, arm, ParameterVector{{0.1, 5.0, 100.0}}, JointVector::Constant(2, 150.0),
                       0.001);
   EXPECT_TRUE(InProjectionSet(config.projection, arm, law.theta_hat()));
 }
@@ -151,7 +151,7 @@ TEST(RobustLaw, ThetaHatIsProjectedFromTheStart) {
 TEST(RobustLaw, DoesNotWindUpAgainstTheTorqueLimit) {
   ArmControllerConfig config = KnownArm(1);
   config.torque_limit_Nm = JointVector::Constant(2, 60.0);
-  ClosedLoop loop(config, {PaperLeader(0.0), {PlanarArm(config.arm).Theta()}}, [](double) {
+  ClosedLoop loop(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()}, [](double) {
     Zeta rest = PaperLeader(0.0);
     rest.v_m_s.setZero();
     rest.a_m_s2.setZero();

@@ -29,8 +29,7 @@ std::vector<double> Numbers(const ArmStart& start) {
   for (const TaskVector* part : {&zeta.x_m, &zeta.v_m_s, &zeta.a_m_s2}) {
     numbers.insert(numbers.end(), part->begin(), part->end());
   }
-  numbers.insert(numbers.end(), start.controller.learned.theta_hat.begin(),
-                 start.controller.learned.theta_hat.end());
+  numbers.insert(numbers.end(), start.controller.theta_hat.begin(), start.controller.theta_hat.end());
   return numbers;
 }
 
@@ -45,10 +44,9 @@ TEST(StartState, BoxFillsThePapersRanges) {
         lowest = std::min(lowest, number);
         highest = std::max(highest, number);
       }
-      theta_lowest = std::min(theta_lowest, start.controller.learned.theta_hat.minCoeff());
-      theta_highest = std::max(theta_highest, start.controller.learned.theta_hat.maxCoeff());
-      EXPECT_EQ(start.controller.learned.theta_hat.size(),
-                PlanarArm(scenario.fleet.arms[arm].arm).parameter_count());
+      theta_lowest = std::min(theta_lowest, start.controller.theta_hat.minCoeff());
+      theta_highest = std::max(theta_highest, start.controller.theta_hat.maxCoeff());
+      EXPECT_EQ(start.controller.theta_hat.size(), PlanarArm(scenario.fleet.arms[arm].arm).parameter_count());
       const auto dof = static_cast<size_t>(scenario.fleet.arms[arm].arm.dof);
       for (size_t i = dof; i < kMaxDof; ++i) EXPECT_EQ(start.q_rad[i], 0.0);
     }
