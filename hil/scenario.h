@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -106,16 +107,43 @@ struct DisturbanceConfig {
   }
 };
 
+/// A link that fails: messages of one node do not reach one arm for some time.
+struct LostLinkConfig {
+  static constexpr double kForGood_s = 1e6;
+
+  int from = -1;
+  int to = 0;
+  double at_s = -1.0;
+  double until_s = kForGood_s;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"from", "", 0, kMaxArms, "id of the arm that is no longer heard; 0: the leader"}, from);
+    parameter({"to", "", 1, kMaxArms, "id of the arm that no longer hears it"}, to);
+    parameter({"at_s", "s", 0, kForGood_s, "time of the first message that is lost"}, at_s);
+    parameter({"until_s", "s", 0, kForGood_s, "time of the first message that arrives again"}, until_s);
+  }
+};
+
 /// The link between the boards in virtual time.
 struct NetworkConfig {
   int delay_ticks = 0;
   double loss = 0.0;
+  std::vector<LostLinkConfig> lost;
+
+  /// Whether what node `from` (0: the leader) sends at `t_s` never reaches arm `to`.
+  bool IsLost(int from, int to, double t_s) const {
+    return std::any_of(lost.begin(), lost.end(), [&](const LostLinkConfig& link) {
+      return link.from == from && link.to == to && t_s >= link.at_s - 1e-9 && t_s < link.until_s - 1e-9;
+    });
+  }
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"delay_ticks", "ticks", 0, 50, "control periods that a message is under way, beside none"},
               delay_ticks);
     parameter({"loss", "", 0, 1, "share of messages lost, each receiver on its own"}, loss);
+    parameter.List({"lost", "a link that fails for some time or for good"}, lost);
   }
 };
 
@@ -130,6 +158,13 @@ struct CriterionConfig {
   double diverged_error_m = 0.2;
   double fleet_rms_max_m = 0.0;
   double agreement_max_m = 0.001;
+  std::vector<int> standing;
+  double standing_speed_max_rad_s = 1.0;
+
+  /// Whether this arm is to stand still in the window, having lost the leader.
+  bool Stands(int arm_id) const {
+    return std::find(standing.begin(), standing.end(), arm_id) != standing.end();
+  }
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -142,6 +177,13 @@ struct CriterionConfig {
     parameter(
         {"agreement_max_m", "m", 0, 100, "agreement: largest distance between two estimates in the window"},
         agreement_max_m);
+    parameter({"standing", "", 1, kMaxArms,
+               "ids of arms that lose the leader: they must stand still in the window, and are not measured "
+               "against it"},
+              standing);
+    parameter({"standing_speed_max_rad_s", "rad/s", 0, 1e3,
+               "largest joint speed of an arm that stands still; the disturbance goes on"},
+              standing_speed_max_rad_s);
   }
 };
 

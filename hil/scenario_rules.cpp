@@ -120,6 +120,52 @@ void CheckLeaderInReach(const ScenarioConfig& scenario, const ConfigCursor& root
   }
 }
 
+std::string AllIds(const FleetConfig& fleet) {
+  std::string text;
+  for (const ArmEntry& arm : fleet.arms) text += (text.empty() ? "" : ", ") + std::to_string(arm.id);
+  return text;
+}
+
+bool Hears(const FleetConfig& fleet, int to, int from) {
+  return std::any_of(fleet.topologies.begin(), fleet.topologies.end(), [&](const Topology& topology) {
+    return std::any_of(topology.pins.begin(), topology.pins.end(),
+                       [&](const Pin& pin) { return from == 0 && pin.arm == to; }) ||
+           std::any_of(topology.edges.begin(), topology.edges.end(),
+                       [&](const Edge& edge) { return edge.from == from && edge.to == to; });
+  });
+}
+
+void CheckLostLinks(const ScenarioConfig& scenario, const ConfigCursor& at, Errors* errors) {
+  for (size_t i = 0; i < scenario.network.lost.size(); ++i) {
+    const LostLinkConfig& link = scenario.network.lost[i];
+    if (!Hears(scenario.fleet, link.to, link.from)) {
+      const std::string whom = link.from == 0 ? "the leader (from = 0)" : "arm " + std::to_string(link.from);
+      Report(
+          at.Element(i),
+          "arm " + std::to_string(link.to) + " does not hear " + whom + " in any topology: nothing to lose",
+          errors);
+    }
+    if (link.until_s <= link.at_s) {
+      Report(
+          at.Element(i).At("until_s"),
+          "given " + ValueText(link.until_s) + " s, allowed is above at_s = " + ValueText(link.at_s) + " s",
+          errors);
+    }
+  }
+}
+
+void CheckStanding(const ScenarioConfig& scenario, const ConfigCursor& at, Errors* errors) {
+  const std::vector<int>& standing = scenario.criterion.standing;
+  for (size_t i = 0; i < standing.size(); ++i) {
+    if (scenario.fleet.IndexOf(standing[i]) >= 0) continue;
+    Report(at.Element(i),
+           "given " + std::to_string(standing[i]) + ", allowed are the arms " + AllIds(scenario.fleet),
+           errors);
+  }
+  if (!standing.empty() && scenario.leader.kind == LeaderKind::kNone)
+    Report(at, "given arms that lose the leader, but there is none", errors);
+}
+
 // Averaging never leaves the box of the starts: with all of it in reach, so is the point that is agreed on.
 void CheckAgreementInReach(const ScenarioConfig& scenario, const ConfigCursor& root, Errors* errors) {
   const TaskVector& centre = scenario.start.zeta_x_centre_m;
@@ -167,6 +213,8 @@ void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& 
                             const ConfigCursor& fleet_root, Errors* errors) {
   const size_t errors_before = errors->size();
   CheckLeaderFits(scenario, root, errors);
+  CheckLostLinks(scenario, root.At("network.lost"), errors);
+  CheckStanding(scenario, root.At("criterion.standing"), errors);
   if (scenario.plant.step_s > scenario.fleet.timing.period_s) {
     Report(root.At("plant.step_s"),
            "given " + ValueText(scenario.plant.step_s) +

@@ -25,6 +25,15 @@ JointVector ReachFrom(const PlanarArm& arm, JointVector q_rad, const TaskVector&
   return q_rad;
 }
 
+std::array<double, 3> LargestStartErrors(const StartConfig& start, const LeaderPath& leader) {
+  const Zeta at_start = leader.At(0.0);
+  // The box lies around its centre, at rest; near the leader, around the leader's own state.
+  const auto error = [&](const TaskVector& offset) {
+    return start.zeta_range + (start.kind == StartKind::kBox ? offset.cwiseAbs().maxCoeff() : 0.0);
+  };
+  return {error(at_start.x_m - start.zeta_x_centre_m), error(at_start.v_m_s), error(at_start.a_m_s2)};
+}
+
 ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader) {
   const StartConfig& config = scenario.start;
   const PlanarArm arm(scenario.fleet.arms[index].arm);

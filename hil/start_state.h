@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "hil/leader_path.h"
 #include "hil/planar_plant.h"
 #include "hil/scenario.h"
@@ -19,6 +21,9 @@ JointVector BentElbow(const PlanarArm& arm);
 /// Joint angles that put the end effector at `x_m`, or as near as the arm reaches, by damped least squares
 /// from `q_rad`: a posture like that one.
 JointVector ReachFrom(const PlanarArm& arm, JointVector q_rad, const TaskVector& x_m);
+
+/// Largest error on any axis that zeta(0) of x (m), v (m/s) and a (m/s^2) can have.
+std::array<double, 3> LargestStartErrors(const StartConfig& start, const LeaderPath& leader);
 
 /// The start of arm `index` in run `seed`. `leader` may be null in a leaderless scenario.
 ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, const LeaderPath* leader);

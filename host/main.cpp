@@ -9,6 +9,7 @@
 #include "host/ablate/ablate_command.h"
 #include "host/can/can_command.h"
 #include "host/check.h"
+#include "host/fleet/fleet_command.h"
 #include "host/floor/floor_command.h"
 #include "host/report_command.h"
 #include "host/run/run_command.h"
@@ -135,6 +136,7 @@ int main(int argc, char** argv) {
   spy_command->callback([&] { code = RunSpyCommand(spy); });
 
   AddCanCommand(&app, &code);
+  AddFleetCommand(&app, &code);
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
     WriteParameterReference(std::cout);

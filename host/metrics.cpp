@@ -58,6 +58,10 @@ nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
       {"max_mm", arm.max_m * 1e3},
       {"estimator_rms",
        {{"x", arm.estimator_rms.x_m}, {"v", arm.estimator_rms.v_m_s}, {"a", arm.estimator_rms.a_m_s2}}},
+      {"estimator_max",
+       {{"x", arm.estimator_max.x_m}, {"v", arm.estimator_max.v_m_s}, {"a", arm.estimator_max.a_m_s2}}},
+      {"joint_speed_max", arm.joint_speed_max_rad_s},
+      {"standing", arm.standing},
       {"torque_max_nm", arm.torque_max_Nm},
       {"saturated_ticks", arm.saturated_ticks},
       {"parameter_error", arm.parameter_error},
@@ -74,13 +78,21 @@ nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
 
 void RunMetrics::Judge(const CriterionConfig& criterion) {
   double sum_squares_m2 = 0.0;
+  int tracking = 0;
   ok = !arms.empty();
   for (ArmMetrics& arm : arms) {
-    if (!(arm.max_m <= criterion.diverged_error_m)) arm.diverged = true;
-    sum_squares_m2 += arm.rms_m * arm.rms_m;
-    if (arm.diverged || !arm.faults.empty() || !(arm.max_m < criterion.error_max_m)) ok = false;
+    arm.standing = criterion.Stands(arm.id);
+    if (arm.standing) {
+      if (!(arm.joint_speed_max_rad_s < criterion.standing_speed_max_rad_s)) ok = false;
+    } else {
+      if (!(arm.max_m <= criterion.diverged_error_m)) arm.diverged = true;
+      if (!(arm.max_m < criterion.error_max_m)) ok = false;
+      sum_squares_m2 += arm.rms_m * arm.rms_m;
+      ++tracking;
+    }
+    if (arm.diverged || !arm.faults.empty()) ok = false;
   }
-  fleet_rms_m = arms.empty() ? 0.0 : std::sqrt(sum_squares_m2 / static_cast<double>(arms.size()));
+  fleet_rms_m = tracking == 0 ? 0.0 : std::sqrt(sum_squares_m2 / tracking);
   if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;
   if (criterion.kind == CriterionKind::kAgreement && !(estimate_spread_m < criterion.agreement_max_m))
     ok = false;
@@ -90,8 +102,15 @@ void RunMetrics::CompareWithFloor(const ScenarioConfig& run) {
   std::vector<JointVector> postures_rad;
   for (const ArmMetrics& arm : arms) postures_rad.push_back(arm.floor_posture_rad);
   const FloorResult floor = Floor(run, seed, postures_rad);
-  floor_rms_m = floor.fleet_rms_m;
-  for (size_t i = 0; i < arms.size(); ++i) arms[i].floor_rms_m = floor.arms[i].rms_m;
+  double sum_squares_m2 = 0.0;
+  int tracking = 0;
+  for (size_t i = 0; i < arms.size(); ++i) {
+    if (arms[i].standing) continue;  // not measured against the leader
+    arms[i].floor_rms_m = floor.arms[i].rms_m;
+    sum_squares_m2 += floor.arms[i].rms_m * floor.arms[i].rms_m;
+    ++tracking;
+  }
+  if (tracking > 0) floor_rms_m = std::sqrt(sum_squares_m2 / tracking);
 }
 
 nlohmann::ordered_json ToJson(const RunMetrics& metrics) {

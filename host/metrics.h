@@ -18,6 +18,23 @@ struct EstimatorRms {
   double a_m_s2 = 0.0;
 };
 
+/// Largest errors in the window on any axis.
+struct EstimatorMax {
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+
+  /// Takes the error of one tick.
+  void Update(const Zeta& estimate, const Zeta& truth) {
+    const auto widen = [](double& largest, const TaskVector& error) {
+      largest = std::max(largest, error.cwiseAbs().maxCoeff());
+    };
+    widen(x_m, estimate.x_m - truth.x_m);
+    widen(v_m_s, estimate.v_m_s - truth.v_m_s);
+    widen(a_m_s2, estimate.a_m_s2 - truth.a_m_s2);
+  }
+};
+
 /// How near a posture came to its goal, in the window.
 struct PostureMetrics {
   int joint = 0;  ///< from 1
@@ -49,6 +66,9 @@ struct ArmMetrics {
   double max_m = 0.0;
   std::optional<double> floor_rms_m;  ///< unavoidable part of rms_m, where it was computed
   EstimatorRms estimator_rms;
+  EstimatorMax estimator_max;
+  double joint_speed_max_rad_s = 0.0;  ///< in the window
+  bool standing = false;               ///< by the criterion: it lost the leader, and must stand still
   double torque_max_Nm = 0.0;
   int saturated_ticks = 0;
   double parameter_error = 0.0;             ///< |theta_hat - theta| / |theta| at the end
@@ -77,7 +97,8 @@ struct RunMetrics {
   std::optional<double> floor_rms_m;  ///< unavoidable part of fleet_rms_m, where it was computed
   bool ok = false;
 
-  /// Fills fleet_rms_m, ok and, by its error, diverged from the arms by the scenario's criterion.
+  /// Fills fleet_rms_m, ok and, of each arm, standing and by its error diverged, from the arms by the
+  /// scenario's criterion.
   void Judge(const CriterionConfig& criterion);
   /// Sets fleet and arms beside the floor (host/floor/floor.h) of the scenario that this is the run of, in
   /// the arms' postures.

@@ -6,6 +6,8 @@
 namespace armada {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 double Sign(double value) {
   return static_cast<double>((value > 0.0) - (value < 0.0));
 }
@@ -48,15 +50,25 @@ Estimator::Estimator(const EstimatorConfig& config, const Zeta& initial)
 }
 
 bool Estimator::CountsAsHeard(const Neighbour& neighbour) const {
-  if (!neighbour.heard || neighbour.age_s > config_.age_max_s) return false;
+  if (neighbour.weight <= 0.0 || !neighbour.heard || neighbour.age_s > config_.age_max_s) return false;
   return config_.leaderless || neighbour.leader_age_s <= config_.age_max_s;
+}
+
+double Estimator::YoungestNews(const Neighbours& neighbours) const {
+  double youngest_s = kInfinity;
+  for (int j = 0; j < neighbours.count; ++j) {
+    const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
+    if (CountsAsHeard(neighbour)) youngest_s = std::min(youngest_s, neighbour.leader_age_s);
+  }
+  return youngest_s;
 }
 
 void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s) {
   const bool predict = config_.kind == EstimatorKind::kPredictive;
   const Eigen::Index m = zeta_.x_m.size();
   const double step_s = missed_s + h_s;
-  const Zeta f = predict ? Taylor(zeta_, jerk_m_s3_, step_s) : zeta_;
+  // Without the jerk: if it were wrong, beta_3 would not suffice to correct it.
+  const Zeta f = predict ? Taylor(zeta_, step_s) : zeta_;
 
   // Weighted mean of what was heard. Without a leader a node is one of its own neighbours: averaging over the
   // others alone only passes values around a ring.
@@ -64,10 +76,11 @@ void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s
   TaskVector mean_jerk_m_s3 = TaskVector::Zero(m);
   double degree = config_.leaderless ? 1.0 : 0.0;
   double oldest_s = 0.0;
-  double leader_age_s = leader_age_s_ + missed_s;
+  const double youngest_s = std::min(leader_age_s_ + missed_s, YoungestNews(neighbours));
+  const double used_up_to_s = predict && !config_.leaderless ? youngest_s + 0.5 * h_s : kInfinity;
   for (int j = 0; j < neighbours.count; ++j) {
     const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
-    if (neighbour.weight <= 0.0 || !CountsAsHeard(neighbour)) continue;
+    if (!CountsAsHeard(neighbour) || neighbour.leader_age_s > used_up_to_s) continue;
     const TaskVector jerk_m_s3 = neighbour.jerk_m_s3.head(m);
     const Zeta z_j = predict ? Taylor(neighbour.zeta, jerk_m_s3, neighbour.age_s + h_s) : neighbour.zeta;
     mean.x_m += neighbour.weight * z_j.x_m;
@@ -76,12 +89,11 @@ void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s
     mean_jerk_m_s3 += neighbour.weight * jerk_m_s3;
     degree += neighbour.weight;
     oldest_s = std::max(oldest_s, neighbour.age_s);
-    leader_age_s = std::min(leader_age_s, neighbour.leader_age_s);
   }
-  leader_age_s_ = leader_age_s + h_s;
+  leader_age_s_ = youngest_s + h_s;
 
   if (degree <= 0.0) {
-    Coast(f, step_s, leader_age_s);
+    Coast(step_s, youngest_s);
   } else {
     mean.x_m /= degree;
     mean.v_m_s /= degree;
@@ -91,7 +103,7 @@ void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s
     jerk_m_s3_ = (mean_jerk_m_s3 / degree).cwiseMax(-beta_3).cwiseMin(beta_3);
     // Since it was last corrected a leader within (A2) can have moved by beta over the time, and over the age
     // of what was heard.
-    const double since_s = step_s + (in_band_ ? coasted_s_ : 0.0);
+    const double since_s = step_s + (coasted_s_ <= config_.age_max_s ? coasted_s_ : 0.0);
     const double band_s = since_s + oldest_s;
     const auto step = [&](const TaskVector& f_part, const TaskVector& mean_part, double beta,
                           TaskVector& part) {
@@ -105,14 +117,15 @@ void Estimator::Update(const Neighbours& neighbours, double h_s, double missed_s
     in_band_ = x_in_band && v_in_band && a_in_band;
     coasted_s_ = 0.0;
   }
-  UpdateAgreement(neighbours);
+  UpdateAgreement(neighbours, used_up_to_s);
 }
 
-void Estimator::Coast(const Zeta& f, double step_s, double leader_age_s) {
+void Estimator::Coast(double step_s, double leader_age_s) {
   coasted_s_ += step_s;
   in_band_ = in_band_ && leader_age_s <= config_.age_max_s;
-  zeta_ = f;
-  if (config_.kind == EstimatorKind::kPredictive && coasted_s_ > config_.age_max_s) {
+  if (config_.kind != EstimatorKind::kPredictive) return;
+  zeta_ = Taylor(zeta_, jerk_m_s3_, step_s);
+  if (coasted_s_ > config_.age_max_s) {
     // A prediction of nothing any more. It would fly away, and take long to come back.
     zeta_.v_m_s.setZero();
     zeta_.a_m_s2.setZero();
@@ -120,14 +133,16 @@ void Estimator::Coast(const Zeta& f, double step_s, double leader_age_s) {
   }
 }
 
-void Estimator::UpdateAgreement(const Neighbours& neighbours) {
+// Who is heard with older news than those in use has no part in the estimate, nor in the agreement.
+void Estimator::UpdateAgreement(const Neighbours& neighbours, double used_up_to_s) {
   // What nobody confirms does not count.
   const int confirmed = coasted_s_ > 0.0 ? 0 : 1;
   agreement_ = in_band_ ? std::min(agreement_ + confirmed, kMaxAgreement) : 0;
   for (int j = 0; j < neighbours.count; ++j) {
     const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
-    if (neighbour.weight <= 0.0) continue;
-    agreement_ = std::min(agreement_, CountsAsHeard(neighbour) ? neighbour.agreement + 1 : 0);
+    const bool heard = CountsAsHeard(neighbour);
+    if (neighbour.weight <= 0.0 || (heard && neighbour.leader_age_s > used_up_to_s)) continue;
+    agreement_ = std::min(agreement_, heard ? neighbour.agreement + 1 : 0);
   }
   ticks_out_of_band_ = in_band_ ? 0 : ticks_out_of_band_ + 1;
   if (agreement_ >= config_.sync_ticks) synced_ = true;

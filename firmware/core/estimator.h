@@ -76,7 +76,10 @@ struct Neighbours {
 ///   paper       zeta+ = zeta - h beta_c sgn(sum_j w_j (zeta - z_j))
 ///   implicit    zeta+ = m + sgn(f - m) max(0, |f - m| - h beta_c), f = zeta
 ///   predictive  the same with f = Taylor(zeta, h) and z_j predicted to the end of the tick. The leader's
-///               jerk serves the prediction, too; every node passes on the mean of what it heard of it.
+///               jerk serves the prediction, too; every node passes on the mean of what it heard of it. Of
+///               the neighbours only those with the youngest news of the leader are used, and none if this
+///               node's are younger: older ones are worse predictions, and around a cycle a node's own error
+///               would come back to it. What is left holds a tree from the leader, as Corollary 3 asks.
 /// (Acary, Brogliato, Orlov, IEEE TAC 2012, for the implicit sgn.)
 ///
 /// While nobody is heard the prediction goes on alone. With topologies that reach everybody only together
@@ -109,8 +112,10 @@ class Estimator {
 
  private:
   bool CountsAsHeard(const Neighbour& neighbour) const;
-  void Coast(const Zeta& f, double step_s, double leader_age_s);
-  void UpdateAgreement(const Neighbours& neighbours);
+  /// Age of the newest leader state behind any neighbour; infinite for none.
+  double YoungestNews(const Neighbours& neighbours) const;
+  void Coast(double step_s, double leader_age_s);
+  void UpdateAgreement(const Neighbours& neighbours, double used_up_to_s);
 
   EstimatorConfig config_;
   Zeta zeta_;

@@ -39,7 +39,12 @@ Json ToJson(const EstimatorCheck& estimator) {
 }
 
 Json ToJson(const ArmCheck& arm) {
-  Json json = {{"id", arm.id}, {"dof", arm.dof}, {"bus_load", arm.bus_load}};
+  Json json = {
+      {"id", arm.id}, {"dof", arm.dof}, {"bus_load", arm.bus_load}, {"leader_news_s", arm.leader_news_s}};
+  if (arm.estimate) {
+    json["estimate_error_max"] = {
+        {"x", arm.estimate->x_m}, {"v", arm.estimate->v_m_s}, {"a", arm.estimate->a_m_s2}};
+  }
   if (arm.disturbance) {
     json["K_r_min_nm"] = arm.disturbance->K_r_min_Nm;
     json["disturbance_2norm_nm"] = arm.disturbance->d_2norm_Nm;
@@ -72,7 +77,8 @@ Json ToJson(const ArmCheck& arm) {
 }  // namespace
 
 void PrintJson(const CheckResult& result, std::ostream& out) {
-  Json json = {{"schema", 1}, {"name", result.name}, {"file", result.file}, {"ok", result.ok()}};
+  Json json = {
+      {"schema", 1}, {"name", result.name}, {"file", result.file}, {"ok", result.ok()}, {"A1", result.A1()}};
   for (const TopologyCheck& topology : result.topologies)
     json["topologies"].push_back(ToJson(topology, result.arms));
   if (result.estimator) json["estimator"] = ToJson(*result.estimator);

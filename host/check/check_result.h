@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/estimate_bound.h"
 #include "host/check/graph_check.h"
 #include "host/check/margin_check.h"
 #include "host/check/path_check.h"
@@ -24,7 +25,9 @@ struct Finding {
 struct ArmCheck {
   int id = 0;
   int dof = 0;
-  double bus_load = 0.0;                        ///< share of its bus
+  double bus_load = 0.0;                  ///< share of its bus
+  double leader_news_s = 0.0;             ///< age that its news of the leader reach; infinite: never any
+  std::optional<EstimateBound> estimate;  ///< of a scenario, where BoundEstimates applies
   std::optional<DisturbanceCheck> disturbance;  ///< of a scenario
   std::optional<PathCheck> path;                ///< of a scenario with a leader
   std::optional<PostureCheck> posture;          ///< the same, of an arm with a posture
@@ -36,11 +39,14 @@ struct CheckResult {
   std::string file;
   bool leaderless = false;
   double period_s = 0.0;
+  double age_max_s = 0.0;  ///< estimator.age_max_s
   std::vector<TopologyCheck> topologies;
   std::vector<ArmCheck> arms;               ///< in the fleet's order
   std::optional<EstimatorCheck> estimator;  ///< of a scenario with a leader
   std::vector<Finding> findings;            ///< errors first
 
+  /// Each topology by itself, or with a leader all in turn before its news count as lost.
+  bool A1() const;
   bool ok() const;  ///< A1 and A2 hold, and no finding is an error
 };
 

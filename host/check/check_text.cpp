@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <iomanip>
 #include <ostream>
 
@@ -7,6 +8,12 @@
 
 namespace armada {
 namespace {
+
+std::string Significant(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
 
 // Cells of a table's row; the first is its head and left-aligned, the others are right-aligned.
 using Row = std::vector<std::string>;
@@ -66,17 +73,21 @@ std::string Cuts(const TopologyCheck& topology) {
 }
 
 void PrintGraph(const CheckResult& result, std::ostream& out) {
-  const bool holds = std::all_of(result.topologies.begin(), result.topologies.end(),
-                                 [](const TopologyCheck& topology) { return topology.holds(); });
   PrintHead(
       result.leaderless ? "Corollary 2: some arm reaches every other" : "A1: the leader reaches every arm",
-      holds, out);
+      result.A1(), out);
   for (size_t k = 0; k < result.topologies.size(); ++k) {
     const TopologyCheck& topology = result.topologies[k];
     out << kIndent << (result.topologies.size() > 1 ? "topology " + std::to_string(k + 1) + ": " : "")
         << Depths(result, topology) << '\n'
         << kIndent << "links whose loss alone cuts arms off: " << Cuts(topology) << '\n';
   }
+  if (result.leaderless) return;
+  const auto oldest = std::max_element(
+      result.arms.begin(), result.arms.end(),
+      [](const ArmCheck& a, const ArmCheck& b) { return a.leader_news_s < b.leader_news_s; });
+  out << kIndent << "news of the leader at most " << Fixed(oldest->leader_news_s, 2) << " s old (arm "
+      << oldest->id << "); they count as lost above " << Fixed(result.age_max_s, 2) << " s\n";
 }
 
 void PrintEstimator(const EstimatorCheck& estimator, std::ostream& out) {
@@ -95,6 +106,7 @@ void PrintEstimator(const EstimatorCheck& estimator, std::ostream& out) {
 Row ArmRow(const ArmCheck& arm) {
   Row row = {std::to_string(arm.id), std::to_string(arm.dof), Fixed(1e2 * arm.bus_load, 1)};
   auto add = [&](std::initializer_list<std::string> cells) { row.insert(row.end(), cells); };
+  if (arm.estimate) add({Significant(1e3 * arm.estimate->x_m)});
   if (arm.disturbance) add({Fixed(arm.disturbance->K_r_min_Nm, 1), Fixed(arm.disturbance->d_2norm_Nm, 1)});
   if (arm.path) {
     const PathCheck& path = *arm.path;
@@ -109,6 +121,7 @@ Row ArmRow(const ArmCheck& arm) {
 void PrintArms(const CheckResult& result, std::ostream& out) {
   const bool disturbance = result.arms.front().disturbance.has_value();
   const bool path = result.arms.front().path.has_value();
+  const bool estimate = result.arms.front().estimate.has_value();
   out << "\nArms\n";
   Row head = {"", "", "bus"};
   Row names = {"arm", "joints", "load %"};
@@ -116,6 +129,7 @@ void PrintArms(const CheckResult& result, std::ostream& out) {
     head.emplace_back(first);
     names.emplace_back(second);
   };
+  if (estimate) add("estimate", "mm");
   if (disturbance) {
     add("K_r", "N m");
     add("|d|_2", "N m");
@@ -137,6 +151,10 @@ void PrintArms(const CheckResult& result, std::ostream& out) {
         << Fixed(result.arms.front().path->sampled_s, 1)
         << " s of motion with perfect control, from an elbow bent\n"
         << kIndent << "to either side; torque of the nominal arm, with the disturbance's amplitude on top.\n";
+  }
+  if (estimate) {
+    out << kIndent
+        << "estimate: bound on its error on any axis in the window, for every leader as fast as this one.\n";
   }
   out << kIndent << "Bus load: every frame as long as stuff bits can make it.\n";
 }

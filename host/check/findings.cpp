@@ -95,6 +95,28 @@ std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm) {
   return found.findings();
 }
 
+std::vector<Finding> FindingsOfLostLinks(const ScenarioConfig& scenario) {
+  const std::vector<int> cut_off = CutOffInWindow(scenario);
+  std::vector<Finding> findings;
+  for (const ArmEntry& entry : scenario.fleet.arms) {
+    const bool is_cut_off = std::find(cut_off.begin(), cut_off.end(), entry.id) != cut_off.end();
+    const bool stands = scenario.criterion.Stands(entry.id);
+    const std::string arm = "arm " + std::to_string(entry.id);
+    if (is_cut_off && stands) {
+      findings.push_back(
+          {Severity::kWarning, arm + " loses the leader by network.lost; it must brake and stand still"});
+    } else if (is_cut_off) {
+      findings.push_back(
+          {Severity::kError, arm + " loses the leader by network.lost, and criterion.standing does not "
+                                   "name it: it is to track a leader it does not know of"});
+    } else if (stands) {
+      findings.push_back(
+          {Severity::kError, arm + " is to stand still by criterion.standing, but does not lose the leader"});
+    }
+  }
+  return findings;
+}
+
 std::string BusLoadError(double load) {
   if (!std::isfinite(load)) return "emulated drives of this configuration do not come up";
   return load > 1.0 ? "its bus would have to carry " + Fixed(1e2 * load, 0) + " % of what it can" : "";

@@ -11,6 +11,9 @@ namespace armada {
 /// What a person must know about one arm, one sentence each. `entry` is the arm that was checked.
 std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm);
 
+/// Who loses the leader by links that fail for good, and whether the criterion says so.
+std::vector<Finding> FindingsOfLostLinks(const ScenarioConfig& scenario);
+
 /// What is wrong with a load of ArmBusLoad; empty when nothing is.
 std::string BusLoadError(double load);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/app/leader_news.h"
+
 namespace armada {
 namespace {
 
@@ -72,6 +74,18 @@ TopologyCheck CheckTopology(const FleetConfig& fleet, size_t index) {
 
 bool TopologyCheck::holds() const {
   return std::none_of(depth.begin(), depth.end(), IsCutOff);
+}
+
+std::vector<int> CutOffInWindow(const ScenarioConfig& scenario) {
+  const FleetConfig& fleet = scenario.fleet;
+  Digraph graph = UnionGraph(fleet);
+  const Reached whole = Reach(graph, false);
+  for (const LostLinkConfig& link : scenario.network.lost) {
+    if (link.at_s > scenario.window_start_s || link.until_s < scenario.seconds) continue;
+    const int to = fleet.IndexOf(link.to);
+    link.from == 0 ? graph.SetPin(to, 0.0) : graph.SetWeight(to, fleet.IndexOf(link.from), 0.0);
+  }
+  return CutOff(fleet, whole, Reach(graph, false));
 }
 
 std::vector<TopologyCheck> CheckTopologies(const FleetConfig& fleet) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "firmware/app/fleet.h"
+#include "hil/scenario.h"
 
 namespace armada {
 
@@ -24,6 +24,10 @@ struct TopologyCheck {
 
   bool holds() const;
 };
+
+/// Ids of the arms that the leader does not reach through all topologies together without the links that
+/// network.lost keeps down over the whole window. @pre a leader.
+std::vector<int> CutOffInWindow(const ScenarioConfig& scenario);
 
 /// One result a topology, in order.
 std::vector<TopologyCheck> CheckTopologies(const FleetConfig& fleet);

@@ -4,20 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "hil/start_state.h"
+
 namespace armada {
-namespace {
-
-double LargestComponent(const TaskVector& vector) {
-  return vector.cwiseAbs().maxCoeff();
-}
-
-// Largest |error| that a part of an estimate can have at the start: the box lies around `centre`, or around
-// the leader's own state near it.
-double StartError(const StartConfig& start, const TaskVector& centre, const TaskVector& leader) {
-  return start.zeta_range + (start.kind == StartKind::kBox ? LargestComponent(leader - centre) : 0.0);
-}
-
-}  // namespace
 
 bool EstimatorCheck::holds() const {
   return std::all_of(margins.begin(), margins.end(), [](const BetaMargin& margin) { return margin.holds(); });
@@ -31,12 +20,7 @@ EstimatorCheck CheckEstimator(const ScenarioConfig& scenario, const LeaderPath& 
                    BetaMargin{estimator.beta_2_m_s2, bounds.a_m_s2},
                    BetaMargin{estimator.beta_3_m_s3, bounds.jerk_m_s3}};
 
-  const Zeta at_start = leader.At(0.0);
-  const TaskVector zero = TaskVector::Zero(at_start.x_m.size());
-  const StartConfig& start = scenario.start;
-  const std::array<double, 3> errors = {StartError(start, start.zeta_x_centre_m, at_start.x_m),
-                                        StartError(start, zero, at_start.v_m_s),
-                                        StartError(start, zero, at_start.a_m_s2)};
+  const std::array<double, 3> errors = LargestStartErrors(scenario.start, leader);
   for (size_t k = 0; k < errors.size(); ++k) {
     const BetaMargin& margin = check.margins[k];
     const double settled_s =

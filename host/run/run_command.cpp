@@ -293,6 +293,10 @@ int RunRunCommand(const RunOptions& options) {
     std::cerr << "armada run: " << wrong << '\n';
     return kExitUsage;
   }
+  if (!scenario->network.lost.empty()) {
+    std::cerr << "armada run: network.lost is of virtual time, which `armada sim` runs\n";
+    return kExitUsage;
+  }
   std::string error;
   if (options.bus == "vm") {
     return PrepareFolder(options.out, &error) ? RunInVm(options, *scenario) : Fail(error);

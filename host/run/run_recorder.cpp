@@ -102,6 +102,7 @@ ArmMetrics RunRecorder::Metrics(size_t index) const {
     squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
     squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
     squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
+    metrics.estimator_max.Update(zeta, truth);
     ++estimates;
   }
   metrics.estimator_rms = {Rms(squares.x_m, estimates), Rms(squares.v_m_s, estimates),
@@ -112,6 +113,8 @@ ArmMetrics RunRecorder::Metrics(size_t index) const {
     for (const double tau_Nm : tick.tau_Nm)
       metrics.torque_max_Nm = std::max(metrics.torque_max_Nm, std::abs(tau_Nm));
     if (!InWindow(tick.stamp_ns)) continue;
+    for (const double dq_rad_s : tick.dq_rad_s)
+      metrics.joint_speed_max_rad_s = std::max(metrics.joint_speed_max_rad_s, std::abs(dq_rad_s));
     subtask.Update(ToJoints(tick.q_rad, entry.arm.dof), tick.subtask_error_rad_s);
   }
   subtask.WriteTo(&metrics);

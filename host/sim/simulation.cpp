@@ -160,6 +160,12 @@ void Simulation::Observe(int64_t k) {
     arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
     arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
     arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
+    arm.estimator_max.Update(zeta, truth);
+    const PlanarPlant& plant = arm.bench.plant();
+    for (int joint = 0; joint < plant.dof(); ++joint) {
+      arm.joint_speed_max_rad_s =
+          std::max(arm.joint_speed_max_rad_s, std::abs(plant.dq_rad_s[static_cast<size_t>(joint)]));
+    }
     for (size_t j = 0; j < i; ++j) {
       estimate_spread_m_ =
           std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
@@ -235,6 +241,8 @@ RunMetrics Simulation::Result() const {
     result.estimator_rms = {Rms(arm.estimator_squares.x_m, arm.window_ticks),
                             Rms(arm.estimator_squares.v_m_s, arm.window_ticks),
                             Rms(arm.estimator_squares.a_m_s2, arm.window_ticks)};
+    result.estimator_max = arm.estimator_max;
+    result.joint_speed_max_rad_s = arm.joint_speed_max_rad_s;
     result.torque_max_Nm = arm.torque_max_Nm;
     result.saturated_ticks = arm.node.controller().saturated_ticks();
     result.parameter_error = (arm.node.controller().theta_hat() - arm.theta).norm() / arm.theta.norm();

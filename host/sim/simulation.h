@@ -29,6 +29,8 @@ class Simulation {
     SubtaskRecord subtask_record;
     ParameterVector theta;  ///< true parameters
     EstimatorRms estimator_squares{};
+    EstimatorMax estimator_max{};
+    double joint_speed_max_rad_s = 0.0;
     int64_t window_ticks = 0;
     double torque_max_Nm = 0.0;
     JointVector floor_posture_rad{};

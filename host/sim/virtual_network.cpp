@@ -10,12 +10,17 @@ namespace armada {
 VirtualNetwork::VirtualNetwork(const ScenarioConfig& scenario, uint64_t seed)
     : config_(scenario.network),
       seed_(seed),
+      period_s_(scenario.fleet.timing.period_s),
       depth_(static_cast<size_t>(scenario.network.delay_ticks) + 1),
       arrival_delay_ns_(static_cast<int64_t>(scenario.fleet.link.clock.wire_time_s * 1e9)),
       listens_to_(scenario.fleet.arms.size()),
       slots_((scenario.fleet.arms.size() + 1) * depth_) {
   channels_.emplace_back(kLeaderChannel);
-  for (const ArmEntry& arm : scenario.fleet.arms) channels_.emplace_back(EstimateChannel(arm.id).view());
+  ids_.push_back(0);
+  for (const ArmEntry& arm : scenario.fleet.arms) {
+    channels_.emplace_back(EstimateChannel(arm.id).view());
+    ids_.push_back(arm.id);
+  }
   const auto connect = [&](int to, size_t sender) {
     std::vector<size_t>& senders = listens_to_[static_cast<size_t>(scenario.fleet.IndexOf(to))];
     if (std::find(senders.begin(), senders.end(), sender) == senders.end()) senders.push_back(sender);
@@ -34,6 +39,7 @@ void VirtualNetwork::Deliver(size_t receiver, int64_t k, int64_t tick_ns, ArmNod
   for (const size_t sender : listens_to_[receiver]) {
     const Slot& slot = SlotOf(sender, sent_at);
     if (slot.size == 0) continue;
+    if (config_.IsLost(ids_[sender], ids_[receiver + 1], static_cast<double>(sent_at) * period_s_)) continue;
     if (config_.loss > 0.0) {
       const uint64_t link = receiver * channels_.size() + sender;
       const uint64_t bits = RandomBits(seed_, kNetworkStream, link, static_cast<uint64_t>(sent_at));

@@ -7,8 +7,8 @@
 
 namespace armada {
 
-/// The LCM link in virtual time: real encoded messages, delayed by whole ticks and lost at random, one
-/// receiver at a time.
+/// The LCM link in virtual time: real encoded messages, delayed by whole ticks and lost at random or by a
+/// link that fails, one receiver at a time.
 class VirtualNetwork {
  public:
   VirtualNetwork(const ScenarioConfig& scenario, uint64_t seed);
@@ -31,8 +31,10 @@ class VirtualNetwork {
 
   NetworkConfig config_;
   uint64_t seed_;
+  double period_s_;
   size_t depth_;
   int64_t arrival_delay_ns_;
+  std::vector<int> ids_;                         ///< by sender; 0: the leader
   std::vector<std::string> channels_;            ///< by sender
   std::vector<std::vector<size_t>> listens_to_;  ///< by receiver: its senders
   std::vector<Slot> slots_;

@@ -76,14 +76,14 @@ TEST(FleetFile, WhatCannotBeReadIsNamed) {
                               ": cannot be read: Is a directory\n");
 }
 
-TEST(FleetFile, SixtyFourKibibytesAreReadAndNoMore) {
+TEST(FleetFile, OneMebibyteIsReadAndNoMore) {
   const std::string comment(kMaxConfigBytes - 1, '#');
   const TemporaryFile largest(comment + "\n");
   std::vector<ConfigError> errors;
   EXPECT_TRUE(LoadToml(largest.path(), &errors).has_value()) << Text(errors);
   const TemporaryFile larger(comment + "#\n", "larger.toml");
   EXPECT_FALSE(LoadToml(larger.path(), &errors).has_value());
-  EXPECT_NE(Text(errors).find("allowed is at most 64 KiB"), std::string::npos);
+  EXPECT_NE(Text(errors).find("allowed is at most 1 MiB"), std::string::npos);
 }
 
 TEST(FleetFile, GarbageIsAnErrorAndNothingElse) {

@@ -535,6 +535,32 @@ TEST(FleetRules, EveryTopologyReachesAllArms) {
   ExpectOneError({"", 34, "", "graph.2", {"does not reach arm 1", "A1"}}, file, ErrorsOf(text, &file));
 }
 
+// Not each, but all in turn before the news of the leader count as lost.
+TEST(FleetRules, TopologiesMayReachAllArmsTogether) {
+  std::string file;
+  std::string text = WithLine(kFleet, 2, "topology_period_s = 0.09");
+  text = WithLine(text, 33, "[[graph]]\nedges = [{ from = 1, to = 6 }]");
+  std::vector<ConfigError> none;
+  const TemporaryFile in_time(text, "in_time.toml");
+  EXPECT_TRUE(LoadFleet(in_time.path(), {}, &none).has_value()) << Text(none);
+  text = WithLine(text, 2, "topology_period_s = 0.1");
+  const auto errors = ErrorsOf(text, &file);
+  ASSERT_EQ(errors.size(), 2u) << Text(errors);
+  EXPECT_EQ(
+      ToString(errors[0]),
+      file +
+          ":31: graph.1: the leader does not reach arm 6; assumption A1 asks for a path of pins and edges to "
+          "every arm, in each topology or in all together in good time: the news of the leader at arm 6 get "
+          "0.21 s old, and estimator.age_max_s = 0.2 s");
+}
+
+TEST(FleetRules, NewsOfTheLeaderArriveInTime) {
+  std::string file;
+  const std::string text = WithLine(kFleet, 6, "age_max_s = 0.01");
+  ExpectOneError({"", 31, "", "graph.1", {"arm 6 get 0.02 s old", "estimator.age_max_s = 0.01 s"}}, file,
+                 ErrorsOf(text, &file));
+}
+
 TEST(FleetRules, TopologiesAreAtMostSixteen) {
   std::string file;
   const std::string text = "name = \"x\"\ntopology_period_s = 1\n" + ArmText(1, kHeavyLink) +

@@ -159,6 +159,47 @@ TEST(Estimator, MeanIsWeighted) {
   EXPECT_NEAR(estimator.zeta().x_m[0], (1.19 + 3.0 * 1.23) / 4.0, 1e-15);
 }
 
+TEST(Estimator, PredictiveKindUsesTheYoungestNewsOnly) {
+  const auto with_news = [](double x_m, double weight, double leader_age_s) {
+    Neighbour neighbour = Leader(ZetaOf(x_m));
+    neighbour.weight = weight;
+    neighbour.leader_age_s = leader_age_s;
+    return neighbour;
+  };
+  const Neighbours heard =
+      Hearing({with_news(1.02, 1.0, 0.020), with_news(1.00, 3.0, 0.021), with_news(9.0, 5.0, 0.03)});
+  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
+  estimator.Update(heard, kH_s);
+  EXPECT_NEAR(estimator.zeta().x_m[0], 1.005, 1e-12) << "the mean of those that are as young as any";
+  EXPECT_NEAR(estimator.leader_age_s(), 0.02 + kH_s, 1e-12);
+
+  Estimator implicit(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
+  implicit.Update(heard, kH_s);
+  EXPECT_NEAR(implicit.zeta().x_m[0], 1.0 + kH_s * 4.0, 1e-12) << "towards the mean of all, (1.9) as printed";
+}
+
+TEST(Estimator, PredictiveKindDoesNotGoBackToOlderNewsThanItsOwn) {
+  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
+  estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+  Neighbour older = Leader(ZetaOf(1.03));
+  older.leader_age_s = 0.03;
+  estimator.Update(Hearing({older}), kH_s);
+  EXPECT_EQ(estimator.zeta().x_m[0], 1.0);
+  EXPECT_TRUE(estimator.in_band());
+  EXPECT_NEAR(estimator.leader_age_s(), 2 * kH_s, 1e-12);
+}
+
+TEST(Estimator, WhoHasOlderNewsNeedNotAgree) {
+  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
+  Neighbour downstream = Leader(ZetaOf(5.0));
+  downstream.leader_age_s = 0.05;
+  downstream.agreement = 0;
+  for (int k = 1; k <= 10; ++k) {
+    estimator.Update(Hearing({Leader(ZetaOf(1.0)), downstream}), kH_s);
+    EXPECT_EQ(estimator.agreement(), k);
+  }
+}
+
 TEST(Estimator, NeighboursWithoutWeightOrNotYetHeardDoNotCount) {
   for (const EstimatorKind kind : kAllKinds) {
     Neighbour silent = Leader(ZetaOf(9.0));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -33,13 +34,12 @@ void ExpectSameValues(const std::vector<EffectiveValue>& actual,
   }
 }
 
-class ShippedScenario : public testing::TestWithParam<const char*> {};
+class ShippedScenario : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedScenario, IsValidAndNamedAsItsFile) {
   const ScenarioConfig scenario = Load(GetParam());
   EXPECT_EQ(scenario.name, GetParam());
-  EXPECT_EQ(scenario.fleet.file, kSource + "/firmware/fleets/paper.toml");
-  EXPECT_EQ(scenario.fleet.arms.size(), 7u);
+  EXPECT_EQ(scenario.fleet.file, kSource + "/firmware/fleets/" + scenario.fleet.name + ".toml");
 }
 
 TEST_P(ShippedScenario, ReadsBackFromItsEffectiveFiles) {
@@ -57,11 +57,16 @@ TEST_P(ShippedScenario, ReadsBackFromItsEffectiveFiles) {
   std::filesystem::remove_all(directory);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
-                         testing::Values("paper", "benign", "leaderless", "switching", "gravity"),
-                         [](const testing::TestParamInfo<const char*>& tested) {
-                           return std::string(tested.param);
-                         });
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/hil/scenarios"))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(ShippedScenarios()),
+                         [](const testing::TestParamInfo<std::string>& tested) { return tested.param; });
 
 TEST(Scenario, OfThePaperIsItsSection4) {
   const ScenarioConfig scenario = Load("paper");
@@ -239,6 +244,31 @@ INSTANTIATE_TEST_SUITE_P(
                    "plant.step_s",
                    {"given 0.001 s", "at most timing.period_s = 5e-04 s"},
                    1},
+        ConfigCase{"LostLinkThatIsNone",
+                   8,
+                   "[[network.lost]]\nfrom = 5\nto = 2\nat_s = 1.0\n[start]",
+                   "network.lost.1",
+                   {"arm 2 does not hear arm 5"},
+                   8},
+        ConfigCase{"LostLinkThatComesBackTooSoon",
+                   8,
+                   "[[network.lost]]\nfrom = 0\nto = 3\nat_s = 1.0\nuntil_s = 1.0\n[start]",
+                   "network.lost.1.until_s",
+                   {"given 1 s", "above at_s = 1 s"},
+                   12},
+        ConfigCase{"LostLinkWithoutATime",
+                   8,
+                   "[[network.lost]]\nfrom = 0\nto = 3\n[start]",
+                   "network.lost.1.at_s",
+                   {"missing"},
+                   8},
+        ConfigCase{"StandingArmThatIsNone",
+                   11,
+                   "standing = [2, 9]",
+                   "criterion.standing.2",
+                   {"given 9", "1, 2, 3, 4, 5, 6, 7"}},
+        ConfigCase{
+            "StandingArmsThatAreNoList", 11, "standing = 2", "criterion.standing", {"list of whole numbers"}},
         ConfigCase{"CentreInSpace",
                    9,
                    "zeta_x_centre_m = [1, 1, 1]",

@@ -92,6 +92,46 @@ TEST(GraphCheck, EachTopologyIsJudgedByItself) {
   EXPECT_FALSE(BuildCheck(fleet).ok());
 }
 
+std::string TextOf(const CheckResult& result) {
+  std::ostringstream out;
+  PrintText(result, out);
+  return out.str();
+}
+
+TEST(GraphCheck, TopologiesThatReachAllInTurnHoldWithAWarning) {
+  ScenarioConfig scenario = PaperScenario();
+  FleetConfig& fleet = scenario.fleet;
+  fleet.topologies = {{{{5, 6}}, {{1}, {3}}}, {{{1, 2}, {1, 4}}, {{5}, {7}}}};
+  fleet.topology_period_s = 0.05;
+  const CheckResult result = BuildCheck(scenario);
+  EXPECT_TRUE(result.A1());
+  EXPECT_TRUE(result.ok());
+  EXPECT_TRUE(Mentions(result, Severity::kWarning, "less than Corollary 3 asks for"));
+  EXPECT_NE(
+      TextOf(result).find("news of the leader at most 0.11 s old (arm 2); they count as lost above 0.20 s"),
+      std::string::npos)
+      << TextOf(result);
+  EXPECT_GT(result.arms[5].estimate->x_m, 100.0 * BuildCheck(PaperScenario()).arms[5].estimate->x_m);
+
+  fleet.topology_period_s = 0.2;
+  EXPECT_FALSE(BuildCheck(scenario).A1());
+}
+
+TEST(GraphCheck, ArmsThatALostLinkCutsOffMustBeExpectedToStand) {
+  ScenarioConfig scenario = PaperScenario();
+  scenario.network.lost = {{.from = 5, .to = 6, .at_s = 10.0}};
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kError, "arm 6 loses the leader"));
+  EXPECT_FALSE(BuildCheck(scenario).ok());
+  scenario.criterion.standing = {6};
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kWarning, "arm 6 loses the leader"));
+  EXPECT_TRUE(BuildCheck(scenario).ok());
+  scenario.criterion.standing = {6, 4};
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kError, "arm 4 is to stand still"));
+  scenario.criterion.standing = {};
+  scenario.network.lost[0].until_s = 20.0;  // it comes back
+  EXPECT_TRUE(BuildCheck(scenario).ok());
+}
+
 TEST(GraphCheck, LeaderlessFleetNeedsARootOfItsOwn) {
   FleetConfig fleet = PaperScenario().fleet;
   fleet.estimator.leaderless = true;

@@ -37,6 +37,11 @@ expect 78 'nonexistent.toml' "$armada" ablate /nonexistent.toml
 expect 1 'nonexistent.json: cannot be read' "$armada" report /nonexistent.json
 expect 2 'there are udp' "$armada" run "$scenario" --bus nonsense
 expect 2 'unknown|not expected|required' "$armada" fly
+expect 2 'network.lost.*armada sim' "$armada" run "$source/hil/scenarios/tree_cut.toml" --out "$work/none"
+expect 2 'SHAPE' "$armada" fleet star "$fleet"
+expect 2 'arms' "$armada" fleet line "$fleet" --arms 65
+expect 2 'pins 8: there are 7 arms' "$armada" fleet line "$fleet" --pins 8
+expect 78 'nonexistent.toml' "$armada" fleet line /nonexistent.toml
 own_network=(unshare --net)
 [ "$(id -u)" = 0 ] || own_network+=(--user --map-root-user)
 expect 1 'multicast' "${own_network[@]}" "$bin/armada-arm" "$fleet" --arm 1
@@ -85,6 +90,18 @@ mkdir "$work/box" && cp "$work/whole.json" "$work/box/sweep.json"
 expect 0 'box/sweep.html' "$armada" report "$work/box"
 expect 0 'governor  +changes the reference' "$armada" ablate "$scenario" "${short[@]}" --seeds 1:2 --json "$work/ablation.json"
 grep -q '"mode": "ablation"' "$work/ablation.json" || fail "no ablation table"
+
+# Generated fleets: those that are committed are what their first lines say made them.
+for name in ring line tree random_50; do
+  file=firmware/fleets/$name.toml
+  read -ra command < <(sed -n 's/^#   armada //p' "$source/$file")
+  (cd "$source" && "$armada" "${command[@]}") | cmp -s - "$source/$file" || fail "$file is not what its heading says"
+done
+"$armada" fleet random "$fleet" --arms 12 --pins 2 --vary 0.1 --seed 3 >"$work/fleet.toml" || fail "fleet"
+expect 0 '^ok' "$armada" check "$work/fleet.toml"
+# A large fleet's effective files read back.
+"$armada" sim "$source/hil/scenarios/random_50.toml" --seconds 1 --set window_start_s=0.5 --trace "$work/large" >/dev/null
+expect 0 '^50 arms' "$armada" check "$work/large/scenario.toml"
 
 # Processes in real time. This checks that they work together, not how late this machine is: under a sanitizer or load
 # the fleet may miss its criterion (exit 1), never its results.

@@ -13,10 +13,13 @@ inline Digraph LineGraph(int count) {
   return graph;
 }
 
-/// The line with its ends joined: node 0 hears the last one, too.
-inline Digraph RingGraph(int count) {
+/// The line with its ends joined and every link in both directions.
+inline Digraph TwoWayRingGraph(int count) {
   Digraph graph = LineGraph(count);
-  graph.SetWeight(0, count - 1, 1.0);
+  for (int i = 0; i < count; ++i) {
+    graph.SetWeight(i, (i + 1) % count, 1.0);
+    graph.SetWeight((i + 1) % count, i, 1.0);
+  }
   return graph;
 }
 

@@ -45,15 +45,23 @@ std::optional<LoadedFleet> LoadFleetTree(const std::string& path, const std::vec
   auto tree = LoadToml(path, errors);
   if (!tree) return std::nullopt;
   for (const Override& change : overrides) Apply(change, &*tree, errors);
-  SpellOutPins(&*tree);
-
-  FleetLayout layout;
-  ReadConfig(*tree, &layout, errors);
-  SpellOutJoints(&layout);
-  CheckFleet(layout, ConfigCursor(*tree), errors);
+  auto loaded = FleetFromTree(std::move(*tree), path, errors);
   SortByPlace(errors, errors_before);
   if (errors->size() > errors_before) return std::nullopt;
-  return LoadedFleet{FleetOf(layout, path), std::move(*tree)};
+  return loaded;
+}
+
+std::optional<LoadedFleet> FleetFromTree(ConfigNode tree, const std::string& path,
+                                         std::vector<ConfigError>* errors) {
+  const size_t errors_before = errors->size();
+  SpellOutPins(&tree);
+  FleetLayout layout;
+  ReadConfig(tree, &layout, errors);
+  SpellOutJoints(&layout);
+  CheckFleet(layout, ConfigCursor(tree), errors);
+  SortByPlace(errors, errors_before);
+  if (errors->size() > errors_before) return std::nullopt;
+  return LoadedFleet{FleetOf(layout, path), std::move(tree)};
 }
 
 std::optional<FleetConfig> LoadFleet(const std::string& path, const std::vector<std::string>& sets,

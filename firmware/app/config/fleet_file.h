@@ -26,6 +26,10 @@ struct LoadedFleet {
 std::optional<LoadedFleet> LoadFleetTree(const std::string& path, const std::vector<Override>& overrides,
                                          std::vector<ConfigError>* errors);
 
+/// The fleet that a tree means; `path` is the file it is said to be of.
+std::optional<LoadedFleet> FleetFromTree(ConfigNode tree, const std::string& path,
+                                         std::vector<ConfigError>* errors);
+
 /// Writes a fleet file that reads back to the same values; every parameter is spelled out.
 void WriteFleet(const FleetConfig& fleet, std::ostream& out);
 

@@ -21,7 +21,8 @@ void CheckArm(const FleetLayout& fleet, size_t index, const ConfigCursor& root,
 void CheckBarriers(const ArmLayout& arm, double period_s, const ConfigCursor& root, const ConfigCursor& at,
                    std::vector<ConfigError>* errors);
 
-/// The topologies: known arms, weights, A1 of each or Corollary 2's tree. @pre arm ids are unique.
+/// The topologies: known arms, weights, A1 of each or of all in turn, or Corollary 2's tree. @pre arm ids are
+/// unique.
 void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, std::vector<ConfigError>* errors);
 
 }  // namespace armada

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "firmware/app/config/fleet_rules.h"
 #include "firmware/app/config/value_text.h"
+#include "firmware/app/leader_news.h"
 
 namespace armada {
 namespace {
@@ -54,28 +56,50 @@ bool CheckParts(const FleetLayout& fleet, const GraphLayout& graph, const Config
   return good;
 }
 
-void CheckA1(const FleetConfig& fleet, size_t topology, const ConfigCursor& at, Errors* errors) {
-  const auto depth = fleet.Graph(topology).DepthFromLeader();
-  std::string unreached;
-  int deepest = 0;
+// Ids of the arms that the leader does not reach.
+std::string Unreached(const FleetConfig& fleet, const Digraph& graph) {
+  const auto depth = graph.DepthFromLeader();
+  std::string ids;
   for (size_t i = 0; i < fleet.arms.size(); ++i) {
-    deepest = std::max(deepest, depth[i]);
-    if (depth[i] != Digraph::kUnreachable) continue;
-    unreached += (unreached.empty() ? "" : ", ") + std::to_string(fleet.arms[i].id);
+    if (depth[i] == Digraph::kUnreachable)
+      ids += (ids.empty() ? "" : ", ") + std::to_string(fleet.arms[i].id);
   }
-  if (unreached.empty()) {
-    // Agreement sees as many hops upstream as it counts: the leader's loss must be seen by the last arm.
-    if (fleet.estimator.sync_ticks <= deepest) {
-      Report(at,
-             "an arm is " + std::to_string(deepest) + " hops from the leader, given estimator.sync_ticks = " +
-                 std::to_string(fleet.estimator.sync_ticks) + "; allowed is more than the hops",
-             errors);
-    }
-    return;
+  return ids;
+}
+
+// A1, for each topology or for all in turn: then the news of the leader must not get so old meanwhile that it
+// counts as lost.
+void CheckA1(const FleetConfig& fleet, const ConfigCursor& graphs, Errors* errors) {
+  const std::vector<double> news_s = OldestLeaderNews(fleet);
+  const auto oldest = std::max_element(news_s.begin(), news_s.end());
+  const auto arm = fleet.arms[static_cast<size_t>(oldest - news_s.begin())].id;
+  const double allowed_s = fleet.estimator.age_max_s;
+  if (*oldest <= allowed_s + 1e-9) return;
+  const std::string age = "the news of the leader at arm " + std::to_string(arm) + " get " +
+                          RoundedText(*oldest) + " s old, and estimator.age_max_s = " + ValueText(allowed_s) +
+                          " s";
+  bool alone = false;
+  for (size_t k = 0; k < fleet.topologies.size(); ++k) {
+    const std::string unreached = Unreached(fleet, fleet.Graph(k));
+    if (unreached.empty()) continue;
+    alone = true;
+    Report(graphs.Element(k),
+           "the leader does not reach arm " + unreached +
+               "; assumption A1 asks for a path of pins and edges to every arm" +
+               (std::isfinite(*oldest) ? ", in each topology or in all together in good time: " + age : ""),
+           errors);
   }
+  if (!alone) Report(graphs.Element(0), age + "; allowed is not above it", errors);
+}
+
+// Agreement sees as many hops upstream as it counts: the leader's loss must be seen by the last arm.
+void CheckSyncTicks(const FleetConfig& fleet, const Digraph& graph, const ConfigCursor& at, Errors* errors) {
+  const auto depth = graph.DepthFromLeader();
+  const int deepest = *std::max_element(depth.begin(), depth.begin() + graph.node_count());
+  if (fleet.estimator.sync_ticks > deepest) return;
   Report(at,
-         "the leader does not reach arm " + unreached +
-             "; assumption A1 asks for a path of pins and edges to every arm",
+         "an arm is " + std::to_string(deepest) + " hops from the leader, given estimator.sync_ticks = " +
+             std::to_string(fleet.estimator.sync_ticks) + "; allowed is more than the hops",
          errors);
 }
 
@@ -123,18 +147,26 @@ void CheckGraphs(const FleetLayout& fleet, const ConfigCursor& root, Errors* err
   if (IsClean(root.At("topology_period_s"), *errors) && IsClean(root.At("timing"), *errors)) {
     CheckSchedule(fleet, root, errors);
   }
-  FleetConfig arms_and_graphs;  // ids are all that a digraph needs of the arms
-  for (const ArmLayout& arm : fleet.arm) arms_and_graphs.arms.emplace_back().id = arm.id;
-  for (size_t i = 0; i < fleet.graph.size(); ++i) {
-    const GraphLayout& graph = fleet.graph[i];
-    const ConfigCursor at = graphs.Element(i);
-    if (!CheckParts(fleet, graph, at, errors)) continue;
-    arms_and_graphs.topologies = {
-        {{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}}};
-    if (!IsClean(root.At("estimator.leaderless"), *errors)) continue;
-    fleet.estimator.leaderless ? CheckLeaderless(arms_and_graphs, 0, at, errors)
-                               : CheckA1(arms_and_graphs, 0, at, errors);
+  FleetConfig parsed;  // what a digraph needs
+  parsed.timing = fleet.timing;
+  parsed.estimator = fleet.estimator;
+  parsed.topology_period_s = fleet.topology_period_s;
+  for (const ArmLayout& arm : fleet.arm) parsed.arms.emplace_back().id = arm.id;
+  bool good = IsClean(root.At("topology_period_s"), *errors) && IsClean(root.At("timing"), *errors) &&
+              IsClean(root.At("estimator"), *errors);
+  for (size_t k = 0; k < fleet.graph.size(); ++k) {
+    const GraphLayout& graph = fleet.graph[k];
+    good = CheckParts(fleet, graph, graphs.Element(k), errors) && good;
+    parsed.topologies.push_back(
+        {{graph.edges.begin(), graph.edges.end()}, {graph.pins.begin(), graph.pins.end()}});
   }
+  if (!good) return;
+  for (size_t k = 0; k < fleet.graph.size(); ++k) {
+    const ConfigCursor at = graphs.Element(k);
+    fleet.estimator.leaderless ? CheckLeaderless(parsed, k, at, errors)
+                               : CheckSyncTicks(parsed, parsed.Graph(k), at, errors);
+  }
+  if (!fleet.estimator.leaderless) CheckA1(parsed, graphs, errors);
 }
 
 }  // namespace armada

@@ -94,6 +94,16 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<st
   return good;
 }
 
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<int>* value,
+               std::vector<ConfigError>* errors) {
+  if (at.node().kind != Kind::kArray) return Expected(at, "a list of whole numbers", errors);
+  std::vector<int> given(at.node().children.size());
+  bool good = true;
+  for (size_t i = 0; i < given.size(); ++i) good = ReadValue(at.Element(i), info, &given[i], errors) && good;
+  if (good) *value = given;
+  return good;
+}
+
 ConfigCursor ParameterReader::Take(const char* key) {
   known_.emplace_back(key);
   return table_.At(key);

@@ -26,6 +26,9 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<do
                std::vector<ConfigError>* errors);
 bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<std::vector<double>>* value,
                std::vector<ConfigError>* errors);
+/// A list of whole numbers.
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<int>* value,
+               std::vector<ConfigError>* errors);
 
 template <int kMaxRows>
 bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, BoundedVector<kMaxRows>* value,

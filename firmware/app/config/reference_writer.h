@@ -67,6 +67,9 @@ class ReferenceWriter {
   static std::string Allowed(const ParameterInfo& info, const std::vector<std::vector<double>>&) {
     return "list of points, each number " + Range(info);
   }
+  static std::string Allowed(const ParameterInfo& info, const std::vector<int>&) {
+    return "list, each " + Range(info);
+  }
   template <int kMaxRows>
   static std::string Allowed(const ParameterInfo& info, const BoundedVector<kMaxRows>&) {
     return Range(info) + ", or a list";

@@ -90,7 +90,7 @@ std::optional<ConfigNode> LoadToml(const std::string& path, std::vector<ConfigEr
   if (!stream.is_open() || stream.bad()) return fail("cannot be read: " + std::string(std::strerror(errno)));
   text.resize(static_cast<size_t>(stream.gcount()));
   if (text.size() > kMaxConfigBytes) {
-    return fail("more than " + std::to_string(kMaxConfigBytes) + " bytes, allowed is at most 64 KiB");
+    return fail("more than " + std::to_string(kMaxConfigBytes) + " bytes, allowed is at most 1 MiB");
   }
   return ParseToml(text, path, errors);
 }

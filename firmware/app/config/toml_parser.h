@@ -10,7 +10,7 @@
 
 namespace armada {
 
-inline constexpr size_t kMaxConfigBytes = size_t{64} * 1024;
+inline constexpr size_t kMaxConfigBytes = size_t{1024} * 1024;
 
 /// Parses TOML text; `file` names it in places. Of syntax errors, duplicate keys among them, the first is
 /// reported.
