@@ -3,6 +3,7 @@
 # usage: sweep_examples_test.sh BIN_DIR SOURCE_DIR
 set -u
 export ARMADA=$1/armada
+unset SHELL # as in a job of cron
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$2" || exit 1

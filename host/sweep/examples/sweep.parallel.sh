@@ -15,6 +15,8 @@ set -euo pipefail
 out=$1 shards=$2
 shift 2
 
+# Without it, and without SHELL as in a job of cron, GNU parallel may take a machine's shell for another and run nothing.
+export PARALLEL_SHELL=/bin/bash
 # A shard has one thread; GNU parallel runs as many as there are cores.
 seq "$shards" | parallel --will-cite --workdir . --env ARMADA --quote \
   bash "$(dirname "$0")/shard.sh" "$out/shards" {} "$shards" "$@"
