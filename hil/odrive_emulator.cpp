@@ -23,6 +23,7 @@ ODriveEmulator::ODriveEmulator(const JointDriveConfig& joint, const EmulatedDriv
       watchdog_s_(config.watchdog_s),
       sensor_(joint, config.encoder_counts_per_turn, config.velocity_noise_rad_s, seed),
       torque_(config.latency_s),
+      heartbeat_(joint.odrive.heartbeat_s),
       feedback_(config.feedback_period_s) {}
 
 void ODriveEmulator::OnFrame(double t_s, const CanFrame& frame, const JointTruth& truth, FrameList* out) {

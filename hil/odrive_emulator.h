@@ -18,8 +18,6 @@ namespace armada {
 /// produce no torque, the latter are not entered.
 class ODriveEmulator final : public EmulatedDrive {
  public:
-  static constexpr double kHeartbeatPeriod_s = 0.1;
-
   /// `joint` gives address, gear, direction, offset and the drive's torque limit. `seed`: of the velocity
   /// noise.
   ODriveEmulator(const JointDriveConfig& joint, const EmulatedDriveConfig& config, uint64_t seed);
@@ -51,7 +49,7 @@ class ODriveEmulator final : public EmulatedDrive {
   uint32_t error_ = 0;
   float input_torque_Nm_ = 0.0f;  ///< motor side
   double last_fed_s_ = 0.0;
-  Periodic heartbeat_{kHeartbeatPeriod_s};
+  Periodic heartbeat_;
   Periodic feedback_;
 };
 

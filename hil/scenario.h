@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,7 @@ struct StartConfig {
   TaskVector zeta_x_centre_m = TaskVector::Zero(PlanarArm::kTaskDim);
   double theta_hat_max = 5.0;
   double near_leader_m = 0.1;
+  std::string learned = "none";
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -82,6 +84,11 @@ struct StartConfig {
               theta_hat_max);
     parameter({"near_leader_m", "m", 0, 10, "near_leader: start within this of x_0(0) on each axis"},
               near_leader_m);
+    parameter(
+        {"learned", "", 0, 0,
+         "warm start: folder with what arms have learnt, arm_<id>.toml, in place of theta_hat(0); relative "
+         "to this file"},
+        learned);
   }
 };
 
@@ -214,6 +221,7 @@ struct ScenarioConfig {
   NetworkConfig network;
   PlantConfig plant;
   CriterionConfig criterion;
+  std::vector<std::optional<ArmInitialState>> learned;  ///< from start.learned, by arm; empty: none
 
   template <class Visitor>
   void Visit(Visitor& parameter) {

@@ -13,6 +13,8 @@
 #include "firmware/app/config/spelling.h"
 #include "firmware/app/config/toml_parser.h"
 #include "firmware/app/config/toml_writer.h"
+#include "firmware/app/config/value_text.h"
+#include "firmware/app/initial_state.h"
 #include "hil/scenario_names.h"
 #include "hil/scenario_rules.h"
 
@@ -90,6 +92,29 @@ std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const 
   return LoadFleetTree(path.string(), overrides, errors);
 }
 
+// What the arms have learnt, as start.learned says.
+void LoadLearned(const ConfigCursor& at, ScenarioConfig* scenario, std::vector<ConfigError>* errors) {
+  if (scenario->start.learned == "none") return;
+  const std::filesystem::path folder = std::filesystem::absolute(
+      (std::filesystem::path(scenario->file).parent_path() / scenario->start.learned).lexically_normal());
+  bool found = false;
+  for (const ArmEntry& arm : scenario->fleet.arms) {
+    scenario->learned.emplace_back();
+    const std::string path = LearnedFile(folder.string(), arm.id);
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) continue;
+    found = true;
+    scenario->learned.back() = LoadInitialState(path, arm, errors);
+  }
+  if (!found) {
+    Report(at,
+           "given " + ValueText(scenario->start.learned) + ", but no arm has a file like " +
+               LearnedFile(folder.string(), scenario->fleet.arms.front().id),
+           errors);
+  }
+  scenario->start.learned = folder.string();  // wherever the scenario is written
+}
+
 }  // namespace
 
 std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::vector<std::string>& sets,
@@ -116,6 +141,7 @@ std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::v
   if (!loaded || errors->size() > errors_before) return std::nullopt;
   scenario.fleet = loaded->fleet;
   CheckScenarioWithFleet(scenario, root, ConfigCursor(loaded->tree), errors);
+  LoadLearned(root.At("start.learned"), &scenario, errors);
   if (errors->size() > errors_before) return std::nullopt;
   return scenario;
 }

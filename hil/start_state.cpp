@@ -66,6 +66,10 @@ ArmStart DrawStart(const ScenarioConfig& scenario, size_t index, uint64_t seed, 
   ParameterVector& theta_hat = start.controller.theta_hat;
   theta_hat.resize(arm.parameter_count());
   for (double& element : theta_hat) element = draw(0.0, config.theta_hat_max);
+  if (!scenario.learned.empty() && scenario.learned[index]) {
+    theta_hat = scenario.learned[index]->theta_hat;
+    start.controller.P_theta = scenario.learned[index]->P_theta;
+  }
   return start;
 }
 

@@ -9,6 +9,7 @@ struct CheckOptions {
   std::string path;               ///< a fleet file or a scenario
   std::vector<std::string> sets;  ///< `key=value` on top of it
   bool json = false;
+  std::string explain{};  ///< only explains the parameters whose keys have this in them
 };
 
 /// `armada check`: loads, checks, and writes the result to standard output and mistakes of the configuration

@@ -36,7 +36,13 @@ int main(int argc, char** argv) {
       app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
   check_command->add_option("FILE", check.path, "fleet or scenario file")->required();
   check_command->add_option("--set", check.sets, "key=value: any parameter of the file")->take_all();
-  check_command->add_flag("--json", check.json, "print JSON");
+  auto* check_json = check_command->add_flag("--json", check.json, "print JSON");
+  check_command
+      ->add_option(
+          "--explain", check.explain,
+          "only the parameters whose keys have this in them: value, default, unit, range, meaning; . for "
+          "all")
+      ->excludes(check_json);
   check_command->callback([&] { code = RunCheck(check); });
 
   SimOptions sim;

@@ -1,13 +1,10 @@
 #include "host/metrics.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "firmware/app/config/enum_names.h"
+#include "firmware/app/whole_file.h"
 #include "host/floor/floor.h"
 
 namespace armada {
@@ -131,25 +128,6 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
                                  {"ok", metrics.ok}};
   AddFloor(metrics.floor_rms_m, metrics.fleet_rms_m, &json);
   return json;
-}
-
-bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write,
-                std::string* error) {
-  const std::filesystem::path target(path);
-  std::error_code code;
-  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), code);
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream file(temporary);
-    write(file);
-    if (!file.flush()) {
-      *error = "cannot write " + temporary + ": " + std::strerror(errno);
-      return false;
-    }
-  }
-  std::filesystem::rename(temporary, target, code);
-  if (code) *error = "cannot write " + path + ": " + code.message();
-  return !code;
 }
 
 bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error) {

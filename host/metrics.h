@@ -108,9 +108,7 @@ struct RunMetrics {
 /// The schema of docs/metrics.md, SI units but for names that say millimetres.
 nlohmann::ordered_json ToJson(const RunMetrics& metrics);
 
-/// Writes through a temporary file, so that a reader never sees half of it. False with *error set.
-bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write, std::string* error);
-/// The same with one JSON value, indented.
+/// One JSON value, indented, whole or not at all. False with *error set.
 bool WriteJson(const nlohmann::ordered_json& json, const std::string& path, std::string* error);
 
 }  // namespace armada

@@ -15,6 +15,7 @@
 #include "firmware/app/initial_state.h"
 #include "firmware/app/loop_report.h"
 #include "firmware/app/realtime.h"
+#include "firmware/app/whole_file.h"
 #include "firmware/can/open_bus.h"
 
 namespace armada {
@@ -39,6 +40,7 @@ struct Options {
   int64_t epoch_ns = 0;
   double seconds = 0.0;
   std::string initial;
+  std::string learned;
   std::string json;
   int priority = 80;
 };
@@ -69,6 +71,7 @@ int Run(const Options& options) {
   }
 
   std::string error;
+  if (!options.learned.empty() && !CanWriteWhole(options.learned, &error)) return Fail(options, error);
   const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
   const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
   if (!link) return Fail(options, error);
@@ -80,8 +83,9 @@ int Run(const Options& options) {
     std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, grant.complaint.c_str());
   StopOnSignals();
 
-  constexpr int64_t kBringUpNs = 1'000'000'000;
-  const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : MonotonicNow() + kBringUpNs;
+  const int64_t epoch_ns = options.epoch_ns > 0
+                               ? options.epoch_ns
+                               : MonotonicNow() + static_cast<int64_t>(fleet->timing.bring_up_s * 1e9);
   const int64_t end_ns = options.seconds > 0.0 ? epoch_ns + static_cast<int64_t>(options.seconds * 1e9)
                                                : std::numeric_limits<int64_t>::max();
   const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns);
@@ -103,6 +107,10 @@ int Run(const Options& options) {
   if (node->fault() != FaultCause::kNone) {
     return Fail(options, std::string("ended in FAULT: ") + NameOf(node->fault()));
   }
+  if (!options.learned.empty() &&
+      !WriteInitialState(WarmStart(entry, node->controller()), entry, options.learned, &error)) {
+    return Fail(options, error);
+  }
   return kExitOk;
 }
 
@@ -118,9 +126,12 @@ int main(int argc, char** argv) {
   app.add_option("FLEET", options.fleet, "fleet file (TOML)")->required();
   app.add_option("--arm", options.arm_id, "id of this board's arm")->required();
   app.add_option("--epoch-ns", options.epoch_ns,
-                 "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now");
+                 "fleet's time 0 on CLOCK_MONOTONIC, ns; default: timing.bring_up_s from now");
   app.add_option("--seconds", options.seconds, "length of the run; default: until SIGINT or SIGTERM");
-  app.add_option("--initial", options.initial, "file with zeta(0) and theta_hat(0); default: nominal");
+  app.add_option("--initial", options.initial,
+                 "file with zeta(0) and theta_hat(0), or what an earlier run has learnt; default: nominal");
+  app.add_option("--learned", options.learned,
+                 "write what the arm learns of its dynamics here, at the end of a run without a fault");
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));

@@ -79,7 +79,7 @@ void Cia402Drive::Configure(int64_t now_ns, FrameList* out) {
 void Cia402Drive::Enable(FrameList* out) {
   switch (power_) {
     case PowerState::kFault:
-      if (healthy_ || fault_resets_ == kMaxFaultResets) return End("fault");
+      if (healthy_ || fault_resets_ == config_.bring_up_attempts) return End("fault");
       controlword_ = controlword_ == cia402::kFaultReset ? cia402::kDisableVoltage : cia402::kFaultReset;
       if (controlword_ == cia402::kFaultReset) ++fault_resets_;
       break;

@@ -38,7 +38,6 @@ class Cia402Drive final : public JointDrive {
   std::string Explain() const override;
 
   /// Resets of an old fault that may fail before it is held to be a new one.
-  static constexpr int kMaxFaultResets = 5;
 
  private:
   enum class Phase {

@@ -36,7 +36,9 @@ std::string NameOf(Entry entry) {
 }  // namespace
 
 Cia402Setup::Cia402Setup(const JointDriveConfig& joint)
-    : node_(joint.node_id), timeout_ns_(std::llround(1e9 * joint.cia402.sdo_timeout_s)) {
+    : node_(joint.node_id),
+      max_attempts_(joint.bring_up_attempts),
+      timeout_ns_(std::llround(1e9 * joint.cia402.sdo_timeout_s)) {
   const Cia402Config& config = joint.cia402;
   Require(cia402::kDeviceType, 402, 0xFFFF, "the profile in the low 16 bits");
   Require(cia402::kSupportedModes, 1u << 9, 1u << 9, "bit 9, cyclic synchronous torque");
@@ -110,7 +112,7 @@ void Cia402Setup::Restart() {
 void Cia402Setup::Tick(int64_t now_ns, FrameList* out) {
   if (result_ != Result::kRunning) return;
   if (attempts_ > 0 && now_ns - asked_ns_ < timeout_ns_) return;
-  if (attempts_ == kMaxAttempts) {
+  if (attempts_ == max_attempts_) {
     result_ = Result::kSilent;
     return;
   }

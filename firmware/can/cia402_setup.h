@@ -18,7 +18,7 @@ class Cia402Setup {
   enum class Result {
     kRunning,
     kDone,     ///< all written, read back and found equal
-    kSilent,   ///< a request was not answered, kMaxAttempts times
+    kSilent,   ///< a request was not answered, bring_up_attempts times
     kRefused,  ///< the drive aborted a request, or an object is not what it should be
   };
 
@@ -41,8 +41,6 @@ class Cia402Setup {
   /// Exchanges of a full configuration.
   size_t size() const { return steps_.size(); }
 
-  static constexpr int kMaxAttempts = 3;
-
  private:
   /// One request: a write, or a read whose answer must equal `value` in the bits of `mask`.
   struct Step {
@@ -63,6 +61,7 @@ class Cia402Setup {
   void Refuse(const canopen::Sdo& reply);
 
   int node_;
+  int max_attempts_;
   int64_t timeout_ns_;
   std::vector<Step> steps_;
   std::vector<Step> checks_;  ///< go to the end of `steps_` when it is complete

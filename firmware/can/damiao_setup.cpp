@@ -58,7 +58,7 @@ void DamiaoSetup::OnAnswer(const damiao::RegisterAccess& answer) {
   }
   differs_ = true;
   found_ = answer.raw;
-  refused_ = !setting.may_write || writes_ == kMaxWrites;
+  refused_ = !setting.may_write || writes_ == joint_.bring_up_attempts;
 }
 
 std::string DamiaoSetup::Explain() const {

@@ -27,7 +27,6 @@ class DamiaoSetup {
   std::string Explain() const;
 
   /// Writes of one register whose read-back may differ before the drive is refused: a write may be lost.
-  static constexpr int kMaxWrites = 5;
 
  private:
   struct Setting {

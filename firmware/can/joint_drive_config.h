@@ -4,6 +4,7 @@
 #include "firmware/can/drive_profile.h"
 #include "firmware/can/mit_config.h"
 #include "firmware/can/moteus_config.h"
+#include "firmware/can/odrive_config.h"
 
 namespace armada {
 
@@ -19,6 +20,8 @@ struct JointDriveConfig {
   /// Silence after which the drive stops by itself. Written to the drive where its protocol can; elsewhere it
   /// is what the drive was set to, and proved at bring-up.
   double watchdog_s = 0.03;
+  int bring_up_attempts = 5;
+  ODriveConfig odrive = {};  ///< profiles odrive_cansimple and odrive_cansimple_v05
   MitConfig mit = {};        ///< profiles mini_cheetah, cubemars and damiao
   Cia402Config cia402 = {};  ///< profile cia402
   MoteusConfig moteus = {};  ///< profile moteus
@@ -34,6 +37,10 @@ struct JointDriveConfig {
     parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque at the joint"}, torque_limit_Nm);
     parameter({"watchdog_s", "s", 0.005, 10, "silence after which the drive must stop by itself"},
               watchdog_s);
+    parameter({"bring_up_attempts", "", 1, 100,
+               "times that a step of the drive's bring-up is tried before the drive counts as failed"},
+              bring_up_attempts);
+    parameter.Table("odrive", odrive);
     parameter.Table("mit", mit);
     parameter.Table("cia402", cia402);
     parameter.Table("moteus", moteus);

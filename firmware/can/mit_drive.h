@@ -42,7 +42,6 @@ class MitDrive final : public JointDrive {
 
   /// Ticks of the bring-up in which the drive may report a fault before it is held to be one: the frame that
   /// clears it may be lost.
-  static constexpr int kMaxFaults = 10;
 
  private:
   enum class Phase {

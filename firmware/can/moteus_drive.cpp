@@ -99,7 +99,7 @@ void MoteusDrive::OnSetup(const moteus::Setup& setup) {
     phase_ = Phase::kTorque;
   } else if (phase_ == Phase::kArm && error_code() != 0) {
     phase_ = Phase::kStop;
-    if (++attempts_ == kMaxAttempts) End(Refusal::kFault);
+    if (++attempts_ == config_.bring_up_attempts) End(Refusal::kFault);
   }
 }
 

@@ -37,7 +37,6 @@ class MoteusDrive final : public JointDrive {
   std::string Explain() const override;
 
   /// Attempts to arm that may end in a fault or a time-out before the drive is held to be faulty.
-  static constexpr int kMaxAttempts = 5;
 
  private:
   enum class Phase {

@@ -12,7 +12,6 @@ namespace {
 
 using odrive::AxisState;
 
-constexpr double kHeartbeat_s = 0.1;
 /// A heartbeat may have been under way when the drive was armed; the second one after it has seen it.
 constexpr int kHeartbeatsToConfirm = 2;
 
@@ -22,7 +21,7 @@ ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
     : config_(config),
       firmware_(odrive::FirmwareOf(config.profile)),
       heartbeats_to_trip_(kHeartbeatsToConfirm +
-                          static_cast<int>(std::ceil(config.watchdog_s / kHeartbeat_s))) {}
+                          static_cast<int>(std::ceil(config.watchdog_s / config.odrive.heartbeat_s))) {}
 
 void ODriveCanSimple::BringUp(int64_t /*now_ns*/, FrameList* out) {
   if (phase_ == Phase::kTorque) return CommandTorque(0.0, out);
@@ -35,7 +34,7 @@ void ODriveCanSimple::BringUp(int64_t /*now_ns*/, FrameList* out) {
   }
   const int patience = proving ? heartbeats_to_trip_ : kHeartbeatsToConfirm;
   if (attempts_ == 0 || heartbeats_since_attempt_ >= patience) {
-    if (attempts_ == kMaxAttempts && heartbeat_.error != 0) {
+    if (attempts_ == config_.bring_up_attempts && heartbeat_.error != 0) {
       phase_ = Phase::kEnded;
       return;
     }
@@ -52,7 +51,7 @@ void ODriveCanSimple::Arm(FrameList* out) {
       odrive::EncodeSetControllerMode(node, {odrive::ControlMode::kTorque, odrive::InputMode::kPassthrough}));
   out->Push(odrive::EncodeSetInputTorque(node, 0.0f));  // the drive keeps an old one through a disarm
   out->Push(odrive::EncodeSetAxisState(node, AxisState::kClosedLoop));
-  attempts_ = std::min(attempts_ + 1, kMaxAttempts);
+  attempts_ = std::min(attempts_ + 1, config_.bring_up_attempts);
   heartbeats_since_attempt_ = 0;
 }
 

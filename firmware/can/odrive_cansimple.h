@@ -33,7 +33,6 @@ class ODriveCanSimple final : public JointDrive {
 
   /// Attempts to arm that may end in an error report before it is held to be a fault: the first error may be
   /// an old one, and the frame that clears it may be lost.
-  static constexpr int kMaxAttempts = 5;
 
  private:
   enum class Phase {

@@ -4,9 +4,10 @@ namespace armada {
 namespace {
 
 std::variant<RobustLaw, PaperLaw> MakeLaw(const ArmControllerConfig& config, const PlanarArm& arm,
-                                          const ParameterVector& theta_hat) {
-  if (config.control.law == LawKind::kPaper) return PaperLaw(config.control, arm, theta_hat);
-  return RobustLaw(config.control, arm, theta_hat, config.torque_limit_Nm, config.timing.sample_to_torque_s);
+                                          const ArmInitialState& initial) {
+  if (config.control.law == LawKind::kPaper) return PaperLaw(config.control, arm, initial.theta_hat);
+  return RobustLaw(config.control, arm, initial.theta_hat, config.torque_limit_Nm,
+                   config.timing.sample_to_torque_s, initial.P_theta);
 }
 
 }  // namespace
@@ -15,7 +16,7 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
     : config_(config),
       arm_(config.arm),
       estimator_(config.estimator, initial.zeta),
-      law_(MakeLaw(config, arm_, initial.theta_hat)),
+      law_(MakeLaw(config, arm_, initial)),
       gate_(config.torque_limit_Nm) {
   status_.x_m = TaskVector::Zero(PlanarArm::kTaskDim);
   status_.zeta = initial.zeta;
@@ -86,6 +87,11 @@ void ArmController::Observe(const ArmInput& in, const Zeta& zeta) {
 
 const ParameterVector& ArmController::theta_hat() const {
   return std::visit([](const auto& law) -> const ParameterVector& { return law.theta_hat(); }, law_);
+}
+
+ParameterMatrix ArmController::P_theta() const {
+  const auto* robust = std::get_if<RobustLaw>(&law_);
+  return robust != nullptr ? robust->P_theta() : ParameterMatrix();
 }
 
 JointVector ArmController::d_hat_Nm() const {

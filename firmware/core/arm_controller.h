@@ -13,6 +13,7 @@ namespace armada {
 struct TimingConfig {
   double period_s = 0.01;
   double sample_to_torque_s = 0.001;
+  double bring_up_s = 1.0;
   double feedback_timeout_s = 0.003;
   double feedback_stale_s = 0.025;
   double transmit_timeout_s = 0.002;
@@ -25,6 +26,8 @@ struct TimingConfig {
         {"sample_to_torque_s", "s", 0, 1,
          "delay from the joint sample to the torque's effect, which the law compensates; below the period"},
         sample_to_torque_s);
+    parameter({"bring_up_s", "s", 0.1, 60, "time before the first tick in which the drives are brought up"},
+              bring_up_s);
     parameter({"feedback_timeout_s", "s", 1e-5, 1,
                "time a tick waits for the joints' samples; a missing one is then predicted"},
               feedback_timeout_s);
@@ -51,6 +54,7 @@ struct ArmControllerConfig {
 struct ArmInitialState {
   Zeta zeta;
   ParameterVector theta_hat;
+  ParameterMatrix P_theta{};  ///< covariance of theta_hat, p x p; empty: adaptation.initial_deviation
 };
 
 /// What one tick sees. `tick_s` lies on the period's grid; the sample was taken at `sample_s`, at or after
@@ -106,6 +110,8 @@ class ArmController {
   double zeta_time_s() const { return zeta_time_s_; }
   const Estimator& estimator() const { return estimator_; }
   const ParameterVector& theta_hat() const;
+  /// Covariance of theta_hat, p x p; empty where the law knows of none.
+  ParameterMatrix P_theta() const;
   JointVector d_hat_Nm() const;
   int saturated_ticks() const { return gate_.saturated_ticks(); }
   const ArmStatus& status() const { return status_; }

@@ -6,23 +6,26 @@
 namespace armada {
 namespace {
 
-ParameterMatrix CovarianceAtStart(const AdaptationConfig& config, Eigen::Index p) {
+ParameterMatrix CovarianceAtStart(const AdaptationConfig& config, const ParameterMatrix& learned,
+                                  Eigen::Index p) {
   if (config.kind != AdaptationKind::kKalman && config.kind != AdaptationKind::kBoth)
     return ParameterMatrix::Zero(p, p);
+  if (learned.size() > 0) return learned;
   return ParameterMatrix::Identity(p, p) * (config.initial_deviation * config.initial_deviation);
 }
 
 }  // namespace
 
 RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
-                     const JointVector& torque_limit_Nm, double sample_to_torque_s)
+                     const JointVector& torque_limit_Nm, double sample_to_torque_s,
+                     const ParameterMatrix& P_theta)
     : config_(config),
       arm_(arm),
       torque_limit_Nm_(torque_limit_Nm),
       latency_s_(sample_to_torque_s),
       theta_hat_(theta_hat),
       filter_(config.sensor, config.disturbance, config.adaptation,
-              CovarianceAtStart(config.adaptation, theta_hat.size()), arm),
+              CovarianceAtStart(config.adaptation, P_theta, theta_hat.size()), arm),
       governor_(config.governor, JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
       tau_before_Nm_(JointVector::Zero(arm.dof())) {

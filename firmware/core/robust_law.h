@@ -10,9 +10,11 @@ namespace armada {
 class RobustLaw {
  public:
   /// `theta_hat` is projected first; `torque_limit_Nm` is what may be sent, n components.
-  /// `sample_to_torque_s` is the delay L that is compensated, below one period.
+  /// `sample_to_torque_s` is the delay L that is compensated, below one period. `P_theta` is the covariance
+  /// of theta_hat, p x p; empty: adaptation.initial_deviation.
   RobustLaw(const ControlConfig& config, const PlanarArm& arm, const ParameterVector& theta_hat,
-            const JointVector& torque_limit_Nm, double sample_to_torque_s);
+            const JointVector& torque_limit_Nm, double sample_to_torque_s,
+            const ParameterMatrix& P_theta = {});
 
   /// Torque wanted over the next period, n components, not limited.
   JointVector Torque(const LawInput& in);
@@ -24,6 +26,8 @@ class RobustLaw {
   /// dq_r of (1.5) for the start of this tick's period, before the governor.
   const JointVector& dq_r_rad_s() const { return dq_r_start_rad_s_; }
   const JointVector& d_hat_Nm() const { return filter_.d_hat_Nm(); }
+  /// Covariance of theta_hat, p x p.
+  ParameterMatrix P_theta() const { return filter_.P_theta(); }
 
  private:
   void Estimate(const LawInput& in);

@@ -32,7 +32,7 @@ class Checker {
  public:
   CanCheckResult Check(const FleetConfig& fleet) {
     result_.fleet = fleet.file;
-    for (const ArmEntry& entry : fleet.arms) CheckArm(entry, fleet.timing.period_s);
+    for (const ArmEntry& entry : fleet.arms) CheckArm(entry, fleet.timing);
     std::stable_partition(result_.findings.begin(), result_.findings.end(),
                           [](const Finding& finding) { return finding.severity == Severity::kError; });
     return std::move(result_);
@@ -43,12 +43,12 @@ class Checker {
     result_.findings.push_back({severity, "arm " + std::to_string(arm_id) + ": " + text});
   }
 
-  void CheckArm(const ArmEntry& entry, double period_s) {
+  void CheckArm(const ArmEntry& entry, const TimingConfig& timing) {
     BusCheck check;
     check.arm_id = entry.id;
     check.bus = entry.bus;
     check.joints = entry.joints;
-    check.load = ArmBusLoad(entry, period_s, EmulatedDriveConfig{});
+    check.load = ArmBusLoad(entry, timing, EmulatedDriveConfig{});
     if (const std::string error = BusLoadError(check.load); !error.empty()) {
       Find(Severity::kError, entry.id, error);
     } else if (check.load > kHighLoad) {

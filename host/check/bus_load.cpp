@@ -10,7 +10,6 @@
 namespace armada {
 namespace {
 
-constexpr double kBringUp_s = 2.0;
 constexpr double kMeasured_s = 1.0;
 
 /// One arm's drives and their master, with nothing between them.
@@ -80,10 +79,10 @@ class Conversation {
 
 }  // namespace
 
-double ArmBusLoad(const ArmEntry& entry, double period_s, const EmulatedDriveConfig& drive) {
-  Conversation conversation(entry, period_s, drive);
+double ArmBusLoad(const ArmEntry& entry, const TimingConfig& timing, const EmulatedDriveConfig& drive) {
+  Conversation conversation(entry, timing.period_s, drive);
   while (!conversation.BringUpTick()) {
-    if (conversation.time_s() > kBringUp_s) return std::numeric_limits<double>::infinity();
+    if (conversation.time_s() > timing.bring_up_s) return std::numeric_limits<double>::infinity();
   }
   const double begin_s = conversation.time_s();
   const double before_s = conversation.on_wire_s();

@@ -8,6 +8,6 @@ namespace armada {
 /// Share of its bus that the steady traffic of one arm takes, every frame as long as stuff bits can make it:
 /// a second of ticks of the arm's master codecs with emulated drives, everything that either side says
 /// counted. Infinity when the drives do not come up.
-double ArmBusLoad(const ArmEntry& entry, double period_s, const EmulatedDriveConfig& drive);
+double ArmBusLoad(const ArmEntry& entry, const TimingConfig& timing, const EmulatedDriveConfig& drive);
 
 }  // namespace armada

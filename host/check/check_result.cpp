@@ -22,7 +22,7 @@ CheckResult BuildFleetCheck(const FleetConfig& fleet, const EmulatedDriveConfig&
     ArmCheck& arm = result.arms.emplace_back();
     arm.id = fleet.arms[i].id;
     arm.dof = fleet.arms[i].arm.dof;
-    arm.bus_load = ArmBusLoad(fleet.arms[i], fleet.timing.period_s, drive);
+    arm.bus_load = ArmBusLoad(fleet.arms[i], fleet.timing, drive);
     arm.leader_news_s = news_s[i];
   }
   return result;
@@ -89,6 +89,8 @@ CheckResult BuildCheck(const ScenarioConfig& scenario) {
         result.arms[i].posture = CheckPosture(scenario, entry, leader);
     }
   }
+  const std::vector<Finding> of_sensors = FindingsOfSensors(scenario);
+  result.findings.insert(result.findings.end(), of_sensors.begin(), of_sensors.end());
   CollectFindings(scenario.fleet, result);
   return result;
 }

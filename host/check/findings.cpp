@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+
+#include "firmware/app/config/value_text.h"
 
 namespace armada {
 namespace {
@@ -112,6 +115,35 @@ std::vector<Finding> FindingsOfLostLinks(const ScenarioConfig& scenario) {
     } else if (stands) {
       findings.push_back(
           {Severity::kError, arm + " is to stand still by criterion.standing, but does not lose the leader"});
+    }
+  }
+  return findings;
+}
+
+std::vector<Finding> FindingsOfSensors(const ScenarioConfig& scenario) {
+  constexpr double kWorse = 2.0;  // what a filter's gains forgive
+  const EmulatedDriveConfig& drive = scenario.drive;
+  std::vector<Finding> findings;
+  for (const ArmEntry& entry : scenario.fleet.arms) {
+    const SensorConfig& declared = entry.control.sensor;
+    const auto judge = [&](const std::string& what, const std::string& unit, double measured,
+                           double believed) {
+      if (measured <= kWorse * believed) return;
+      findings.push_back({Severity::kWarning, "arm " + std::to_string(entry.id) + ": its drives measure " +
+                                                  what + " to " + ValueText(measured) + " " + unit +
+                                                  ", worse than control.sensor says, " +
+                                                  ValueText(believed)});
+    };
+    for (size_t i = 0; i < entry.joints.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double counts_per_joint_turn = drive.encoder_counts_per_turn * entry.joints[i].gear_ratio;
+      const double step_rad =
+          counts_per_joint_turn > 0.0 ? 2.0 * std::numbers::pi / counts_per_joint_turn : 0.0;
+      const std::string of_joint = " of joint " + std::to_string(i + 1);
+      judge("the position" + of_joint, "rad", step_rad / std::sqrt(12.0),
+            declared.position_deviation_rad[row]);
+      judge("the velocity" + of_joint, "rad/s", drive.velocity_noise_rad_s,
+            declared.velocity_deviation_rad_s[row]);
     }
   }
   return findings;

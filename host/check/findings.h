@@ -14,6 +14,9 @@ std::vector<Finding> FindingsOf(const ArmEntry& entry, const ArmCheck& arm);
 /// Who loses the leader by links that fail for good, and whether the criterion says so.
 std::vector<Finding> FindingsOfLostLinks(const ScenarioConfig& scenario);
 
+/// Whose law believes its samples to be better than the scenario's drives measure.
+std::vector<Finding> FindingsOfSensors(const ScenarioConfig& scenario);
+
 /// What is wrong with a load of ArmBusLoad; empty when nothing is.
 std::string BusLoadError(double load);
 

@@ -103,7 +103,8 @@ bool Run::WriteInputs(std::string* error) {
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, options_.seed, leader ? &*leader : nullptr);
     const std::string id = std::to_string(scenario_.fleet.arms[i].id);
-    if (!WriteInitialState(start.controller, In("initial_" + id + ".toml"), error)) return false;
+    if (!WriteInitialState(start.controller, scenario_.fleet.arms[i], In("initial_" + id + ".toml"), error))
+      return false;
   }
   return true;
 }
@@ -189,9 +190,10 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     const std::string id = std::to_string(arm.id);
     std::vector<std::string> board;
     if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
-    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
-                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"), "--json",
-                               In("arm_" + id + ".json")});
+    board.insert(board.end(),
+                 {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds",
+                  Seconds(), "--initial", In("initial_" + id + ".toml"), "--learned",
+                  LearnedFile(In("learned"), arm.id), "--json", In("arm_" + id + ".json")});
     if (!Start(group, "arm " + id, std::move(board), error)) return false;
   }
   return scenario_.leader.kind == LeaderKind::kNone ||

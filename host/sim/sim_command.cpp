@@ -18,13 +18,15 @@ bool SimulateInto(const ScenarioConfig& scenario, uint64_t seed, const std::stri
     *error = trace.error();
     return false;
   }
-  *metrics = Simulation(scenario, seed).Run(&trace);
+  Simulation simulation(scenario, seed);
+  *metrics = simulation.Run(&trace);
   if (!trace.Close()) {
     *error = trace.error();
     return false;
   }
   if (floor) metrics->CompareWithFloor(scenario);
   return WriteEffective(scenario, directory, error) &&
+         simulation.WriteLearned(directory + "/learned", error) &&
          WriteJson(ToJson(*metrics), directory + "/metrics.json", error);
 }
 

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/app/initial_state.h"
 #include "host/floor/floor.h"
 
 namespace armada {
 namespace {
-
-constexpr double kBringUp_s = 1.0;  // the slowest drives are up well before
 
 void Copy(const TaskVector& from, double (&to)[3]) {
   std::copy(from.data(), from.data() + from.size(), to);
@@ -43,11 +42,12 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
   arms_.reserve(scenario_.fleet.arms.size());
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, seed, leader);
-    arms_.push_back(Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
-                        .bench = EmulatedArm(scenario_, i, seed, start, leader, -kBringUp_s),
-                        .record = TrackingRecord(scenario_),
-                        .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
-                        .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
+    arms_.push_back(
+        Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
+            .bench = EmulatedArm(scenario_, i, seed, start, leader, -scenario_.fleet.timing.bring_up_s),
+            .record = TrackingRecord(scenario_),
+            .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
+            .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
   }
 }
 
@@ -65,7 +65,7 @@ RunMetrics Simulation::Run(TraceWriter* trace) {
 }
 
 void Simulation::BringUp() {
-  for (int64_t k = -std::llround(kBringUp_s / period_s_); k < 0; ++k) {
+  for (int64_t k = -std::llround(scenario_.fleet.timing.bring_up_s / period_s_); k < 0; ++k) {
     for (Arm& arm : arms_) {
       to_drives_.Clear();
       arm.node.BringUp(NanosecondsOf(k), &to_drives_);
@@ -214,6 +214,18 @@ void Simulation::AdvancePlants(int64_t k) {
       arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
     }
   }
+}
+
+bool Simulation::WriteLearned(const std::string& folder, std::string* error) const {
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const ArmNode& node = arms_[i].node;
+    const ArmEntry& entry = scenario_.fleet.arms[i];
+    if (node.fault() == FaultCause::kNone && !WriteInitialState(WarmStart(entry, node.controller()), entry,
+                                                                LearnedFile(folder, entry.id), error)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 RunMetrics Simulation::Result() const {

@@ -21,6 +21,10 @@ class Simulation {
   /// Runs to the end. `trace` may be null.
   RunMetrics Run(TraceWriter* trace);
 
+  /// What each arm without a fault has learnt of its dynamics, into `folder`/arm_<id>.toml: the start.learned
+  /// of another run. False with *error set.
+  bool WriteLearned(const std::string& folder, std::string* error) const;
+
  private:
   struct Arm {
     ArmNode node;

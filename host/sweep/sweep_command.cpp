@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "firmware/app/exit_codes.h"
+#include "firmware/app/whole_file.h"
 #include "host/floor/floor_command.h"
 #include "host/sim/simulation.h"
 #include "host/sweep/seed_jobs.h"
@@ -41,6 +42,7 @@ int RunSweepCommand(const SweepOptions& options) {
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
   if (options.floor && !HasFloor(*scenario)) return kExitUsage;
+  if (std::string error; !options.json.empty() && !CanWriteWhole(options.json, &error)) return Failed(error);
   try {
     ResultTable results(seeds->size(), ArmIds(*scenario));
     RunSeedJobs(*seeds, options.jobs, [&](size_t row, uint64_t seed) {

@@ -1,5 +1,6 @@
 #include "host/sweep/sweep_result.h"
 
+#include "firmware/app/whole_file.h"
 #include "host/shell_quote.h"
 
 namespace armada {

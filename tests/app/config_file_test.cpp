@@ -241,5 +241,21 @@ TEST(EffectiveValues, NameEveryParameterWithItsUnit) {
   EXPECT_EQ(find("estimator.kind"), "\"predictive\" ");
 }
 
+TEST(EffectiveValues, KnowTheDefaultsBesideTheValues) {
+  const auto values =
+      EffectiveValues(Paper({"arm.6.control.reference.alpha_per_tick=2", "timing.period_s=0.02"}));
+  const auto find = [&](const std::string& key) {
+    for (const EffectiveValue& value : values) {
+      if (value.key == key) return value.fallback + "; " + value.allowed;
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(find("timing.period_s"), "0.01; 1e-04 to 1");
+  EXPECT_EQ(find("arm.6.control.reference.alpha_per_tick"), "4; 0.001 to 1000");
+  EXPECT_EQ(find("arm.7.link.3.I_kgm2"), "required; 1e-09 to 10000");
+  EXPECT_EQ(find("arm.7.q_min_rad"), "none; -1000 to 1000, or a list");
+  EXPECT_EQ(find("estimator.kind"), "\"predictive\"; \"paper\", \"implicit\", \"predictive\"");
+}
+
 }  // namespace
 }  // namespace armada

@@ -30,7 +30,7 @@ TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
   state.zeta.a_m_s2 << -1e-17, 5.0;
   state.theta_hat *= 1.0 / 7.0;
   std::string error;
-  ASSERT_TRUE(WriteInitialState(state, TemporaryFile(), &error)) << error;
+  ASSERT_TRUE(WriteInitialState(state, arm, TemporaryFile(), &error)) << error;
   std::vector<ConfigError> errors;
   const auto read = LoadInitialState(TemporaryFile(), arm, &errors);
   ASSERT_TRUE(read.has_value());
@@ -38,6 +38,83 @@ TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
   EXPECT_EQ(read->zeta.v_m_s, state.zeta.v_m_s);
   EXPECT_EQ(read->zeta.a_m_s2, state.zeta.a_m_s2);
   EXPECT_EQ(read->theta_hat, state.theta_hat);
+  EXPECT_EQ(read->P_theta.size(), 0);
+}
+
+// What arm 6 of the paper learns in 5 s at rest under gravity-free torques of nobody: its controller alone.
+ArmInitialState Learnt(const ArmEntry& arm) {
+  ArmControllerConfig config;
+  config.arm = arm.arm;
+  config.control = arm.control;
+  config.torque_limit_Nm = JointVector::Constant(arm.arm.dof, 300.0);
+  ArmInitialState initial = NominalInitialState(arm);
+  initial.theta_hat *= 2.0;
+  ArmController controller(config, initial);
+  JointVector q_rad = JointVector::LinSpaced(arm.arm.dof, 0.3, 0.9);
+  JointVector dq_rad_s = JointVector::Zero(arm.arm.dof);
+  for (int k = 0; k < 50; ++k) {
+    const double t_s = k * config.timing.period_s;
+    q_rad += config.timing.period_s * dq_rad_s;
+    dq_rad_s.setConstant(std::sin(5.0 * t_s));
+    controller.Step({t_s, t_s, q_rad, dq_rad_s, {}});
+  }
+  return WarmStart(arm, controller);
+}
+
+TEST(InitialState, WhatWasLearntReadsBackExactly) {
+  const ArmEntry arm = PaperArm(5);
+  const ArmInitialState learnt = Learnt(arm);
+  EXPECT_NE(learnt.theta_hat, 2.0 * NominalInitialState(arm).theta_hat);
+  const double deviation = arm.control.adaptation.initial_deviation;
+  EXPECT_LT(learnt.P_theta.trace(), 6.0 * deviation * deviation) << "surer than at its start";
+  std::string error;
+  ASSERT_TRUE(WriteInitialState(learnt, arm, TemporaryFile(), &error)) << error;
+  std::vector<ConfigError> errors;
+  const auto read = LoadInitialState(TemporaryFile(), arm, &errors);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->theta_hat, learnt.theta_hat);
+  EXPECT_EQ(read->P_theta, learnt.P_theta);
+}
+
+TEST(InitialState, IsBoundToTheArmsEntryButNotToItsTuning) {
+  const ArmEntry arm = PaperArm(5);
+  std::string error;
+  ASSERT_TRUE(WriteInitialState(Learnt(arm), arm, TemporaryFile(), &error)) << error;
+  const auto fits = [](const ArmEntry& entry) {
+    std::vector<ConfigError> errors;
+    const bool read = LoadInitialState(TemporaryFile(), entry, &errors).has_value();
+    EXPECT_EQ(read, errors.empty());
+    if (!read) {
+      EXPECT_EQ(errors[0].key, "arm_entry");
+    }
+    return read;
+  };
+  ArmEntry tuned = arm;
+  tuned.control.gains.K_s_Nms_rad *= 2.0;
+  tuned.control.adaptation.drift_variance *= 2.0;
+  tuned.bus = "socketcan:can9";
+  EXPECT_TRUE(fits(tuned));
+  ArmEntry other = arm;
+  other.arm.links[1].m_kg *= 1.001;
+  EXPECT_FALSE(fits(other));
+  other = arm;
+  other.id = 7;
+  EXPECT_FALSE(fits(other));
+  other = arm;
+  other.joints[0].gear_ratio *= 2.0;
+  EXPECT_FALSE(fits(other));
+}
+
+TEST(InitialState, ACovarianceThatIsNoneIsRefusedWithItsLine) {
+  for (const char* P : {"[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.0, 0.0], [0.0, 1.0], [0.0, 0.0, 1.0]]",
+                        "[[1.0, 2.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]",
+                        "[[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]]"}) {
+    std::ofstream(TemporaryFile()) << "theta_hat = [1.0, 2.0, 3.0]\nP_theta = " << P << "\n";
+    std::vector<ConfigError> errors;
+    EXPECT_FALSE(LoadInitialState(TemporaryFile(), PaperArm(0), &errors).has_value()) << P;
+    ASSERT_EQ(errors.size(), 1u) << P;
+    EXPECT_EQ(errors[0].line, 2) << P;
+  }
 }
 
 TEST(InitialState, OfAnotherArmIsRefusedWithItsLine) {

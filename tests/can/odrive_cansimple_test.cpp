@@ -166,7 +166,7 @@ TEST_F(ODrive, AnErrorThatStaysIsAFaultAfterABoundedNumberOfAttempts) {
     attempts += Tick() == 4;
     Hear(AxisState::kIdle, kSomeError);
   }
-  EXPECT_EQ(attempts, ODriveCanSimple::kMaxAttempts);
+  EXPECT_EQ(attempts, JointDriveConfig().bring_up_attempts);
   EXPECT_EQ(drive_.state(), DriveState::kFault);
   EXPECT_EQ(drive_.error_code(), kSomeError);
   EXPECT_EQ(drive_.Explain(), "axis error 0x20");

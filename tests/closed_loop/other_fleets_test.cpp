@@ -129,9 +129,8 @@ TEST(LostLink, WithASpareOneIsNotNoticed) {
   }
 }
 
-// The errors that come out are those that the bound says are possible: neither above it nor far below. The
-// leader's largest snap and a switch of topologies need not meet within a window.
-void ExpectErrorsAtTheirBound(const ScenarioConfig& scenario) {
+// The errors that come out are those that the bound says are possible: neither above it nor far below.
+void ExpectErrorsAtTheirBound(const ScenarioConfig& scenario, double share) {
   const auto bounds = BoundEstimates(scenario);
   ASSERT_TRUE(bounds.has_value());
   const RunMetrics metrics = Simulation(scenario, 1).Run(nullptr);
@@ -141,19 +140,20 @@ void ExpectErrorsAtTheirBound(const ScenarioConfig& scenario) {
     for (const auto& [came_out, possible] :
          {std::pair{error.x_m, bound.x_m}, {error.v_m_s, bound.v_m_s}, {error.a_m_s2, bound.a_m_s2}}) {
       EXPECT_LE(came_out, possible * (1.0 + 1e-6)) << scenario.name << ", arm " << i + 1;
-      EXPECT_GE(came_out, 0.7 * possible) << scenario.name << ", arm " << i + 1;
+      EXPECT_GE(came_out, share * possible) << scenario.name << ", arm " << i + 1;
     }
   }
 }
 
 TEST(EstimateBounds, HoldAndAreNearlyAttained) {
-  ExpectErrorsAtTheirBound(ScenarioNamed("jointly", {"seconds=16.0", "window_start_s=13.0"}));
-  ExpectErrorsAtTheirBound(ScenarioNamed("switching", {"seconds=16.0", "window_start_s=13.0"}));
-  ExpectErrorsAtTheirBound(ScenarioNamed("line", {"seconds=12.0", "window_start_s=8.0"}));
+  ExpectErrorsAtTheirBound(ScenarioNamed("jointly", {"seconds=16.0", "window_start_s=13.0"}), 0.9);
+  // The leader's largest snap and a switch of topologies do not meet.
+  ExpectErrorsAtTheirBound(ScenarioNamed("switching", {"seconds=16.0", "window_start_s=13.0"}), 0.5);
+  ExpectErrorsAtTheirBound(ScenarioNamed("line", {"seconds=12.0", "window_start_s=8.0"}), 0.9);
   ExpectErrorsAtTheirBound(
-      ScenarioNamed("ring", {"seconds=12.0", "window_start_s=8.0", "network.delay_ticks=1"}));
+      ScenarioNamed("ring", {"seconds=12.0", "window_start_s=8.0", "network.delay_ticks=1"}), 0.9);
   ExpectErrorsAtTheirBound(
-      ScenarioNamed("paper", {"seconds=12.0", "window_start_s=8.0", "leader.rate_hz=30.0"}));
+      ScenarioNamed("paper", {"seconds=12.0", "window_start_s=8.0", "leader.rate_hz=30.0"}), 0.9);
 }
 
 TEST(JointlyConnected, TopologiesThatReachAllOnlyTogetherAreEnough) {

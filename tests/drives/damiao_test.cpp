@@ -151,7 +151,7 @@ TEST(DamiaoDrive, ARegisterThatDoesNotTakeItsValueIsRefused) {
   EXPECT_EQ(bench.BringUpTicks(kMaxTicks), kMaxTicks);
   EXPECT_EQ(bench.master->state(), DriveState::kFault);
   EXPECT_EQ(bench.master->Explain(), "TIMEOUT (register 9) of the drive is 0, written was 600");
-  EXPECT_EQ(writes, DamiaoSetup::kMaxWrites);
+  EXPECT_EQ(writes, JointDriveConfig().bring_up_attempts);
 }
 
 TEST(DamiaoDrive, AFaultIsNamedAndAnOldOneCleared) {

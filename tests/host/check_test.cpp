@@ -132,6 +132,18 @@ TEST(GraphCheck, ArmsThatALostLinkCutsOffMustBeExpectedToStand) {
   EXPECT_TRUE(BuildCheck(scenario).ok());
 }
 
+TEST(SensorCheck, DrivesThatMeasureWorseThanTheLawBelievesAreNamed) {
+  ScenarioConfig scenario = PaperScenario();
+  EXPECT_FALSE(Mentions(BuildCheck(scenario), Severity::kWarning, "worse than control.sensor says"));
+  scenario.drive.velocity_noise_rad_s = 0.02;
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kWarning,
+                       "arm 6: its drives measure the velocity of joint 3 to 0.02 rad/s"));
+  for (ArmEntry& arm : scenario.fleet.arms) arm.control.sensor.velocity_deviation_rad_s.setConstant(0.02);
+  EXPECT_FALSE(Mentions(BuildCheck(scenario), Severity::kWarning, "worse than control.sensor says"));
+  scenario.drive.encoder_counts_per_turn = 4096;
+  EXPECT_TRUE(Mentions(BuildCheck(scenario), Severity::kWarning, "the position of joint 1"));
+}
+
 TEST(GraphCheck, LeaderlessFleetNeedsARootOfItsOwn) {
   FleetConfig fleet = PaperScenario().fleet;
   fleet.estimator.leaderless = true;
@@ -326,17 +338,17 @@ TEST(BusLoad, CountsWhatAJointAsksAnswersAndGetsEachTick) {
   const FleetConfig fleet = PaperScenario().fleet;
   // Request 55, answer 135, torque of 4 bytes 95 bits at 100 Hz; heartbeat of 135 at 10 Hz.
   constexpr double kJoint = (100.0 * (55 + 135 + 95) + 10.0 * 135) / 1e6;
-  EXPECT_NEAR(ArmBusLoad(fleet.arms[0], 0.01, {}), 2 * kJoint, 2e-4 * kJoint);
-  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], 0.01, {}), 3 * kJoint, 3e-4 * kJoint);
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[0], {}, {}), 2 * kJoint, 2e-4 * kJoint);
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], {}, {}), 3 * kJoint, 3e-4 * kJoint);
   EmulatedDriveConfig cyclic;
   cyclic.feedback_period_s = 0.02;
-  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], 0.01, cyclic), 3 * (kJoint + 50 * 135 / 1e6), 1e-4);
+  EXPECT_NEAR(ArmBusLoad(fleet.arms[5], {}, cyclic), 3 * (kJoint + 50 * 135 / 1e6), 1e-4);
 }
 
 TEST(BusLoad, IsInfiniteForDrivesThatDoNotComeUp) {
   EmulatedDriveConfig without_watchdog;
   without_watchdog.watchdog_s = 0.0;
-  EXPECT_TRUE(std::isinf(ArmBusLoad(PaperScenario().fleet.arms[0], 0.01, without_watchdog)));
+  EXPECT_TRUE(std::isinf(ArmBusLoad(PaperScenario().fleet.arms[0], {}, without_watchdog)));
 }
 
 TEST(BusLoad, MoreThanABusCarriesIsAnError) {

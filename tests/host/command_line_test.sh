@@ -91,6 +91,13 @@ expect 0 'box/sweep.html' "$armada" report "$work/box"
 expect 0 'governor  +changes the reference' "$armada" ablate "$scenario" "${short[@]}" --seeds 1:2 --json "$work/ablation.json"
 grep -q '"mode": "ablation"' "$work/ablation.json" || fail "no ablation table"
 
+# What each number is.
+expect 0 'arm\.\*\.control\.reference\.braking_share = 0.9' "$armada" check "$scenario" --explain braking_share
+expect 0 'default 0\.9, allowed' "$armada" check "$scenario" --explain braking_share
+expect 0 'arm\.6\.torque_limit_Nm = .*300' "$armada" check "$fleet" --explain torque_limit_Nm
+expect 2 'no parameter' "$armada" check "$scenario" --explain no_such_key
+expect 78 'no_such_key' "$armada" check "$scenario" --explain . --set no_such_key=1
+
 # Generated fleets: those that are committed are what their first lines say made them.
 for name in ring line tree random_50; do
   file=firmware/fleets/$name.toml

@@ -27,6 +27,8 @@ ArmLayout ArmLayoutOf(const ArmEntry& entry) {
   const JointDriveConfig& first = entry.joints.front();
   layout.drive = first.profile;
   layout.watchdog_s = first.watchdog_s;
+  layout.bring_up_attempts = first.bring_up_attempts;
+  layout.odrive = first.odrive;
   layout.mit = first.mit;
   layout.cia402 = first.cia402;
   layout.moteus = first.moteus;
@@ -48,6 +50,8 @@ JointDriveConfig ArmLayout::JointPrototype(size_t i) const {
   JointDriveConfig prototype;
   prototype.profile = drive;
   prototype.watchdog_s = watchdog_s;
+  prototype.bring_up_attempts = bring_up_attempts;
+  prototype.odrive = odrive;
   prototype.mit = mit;
   prototype.cia402 = cia402;
   prototype.moteus = moteus;

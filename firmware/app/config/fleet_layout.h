@@ -45,6 +45,8 @@ struct ArmLayout {
   DriveProfile drive = DriveProfile::kODriveCanSimple;
   JointVector torque_limit_Nm;
   double watchdog_s = JointDriveConfig().watchdog_s;
+  int bring_up_attempts = JointDriveConfig().bring_up_attempts;
+  ODriveConfig odrive;
   MitConfig mit;
   Cia402Config cia402;
   MoteusConfig moteus;
@@ -64,6 +66,10 @@ struct ArmLayout {
     parameter({"torque_limit_Nm", "N m", 1e-3, 1e5, "largest torque of a joint: one value, or one a joint"},
               torque_limit_Nm);
     parameter({"watchdog_s", "s", 0.005, 10, "silence after which a drive must stop by itself"}, watchdog_s);
+    parameter({"bring_up_attempts", "", 1, 100,
+               "times that a step of a drive's bring-up is tried before the drive counts as failed"},
+              bring_up_attempts);
+    parameter.Table("odrive", odrive);
     parameter.Table("mit", mit);
     parameter.Table("cia402", cia402);
     parameter.Table("moteus", moteus);

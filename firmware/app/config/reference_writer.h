@@ -1,14 +1,12 @@
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <typeindex>
 #include <utility>
 #include <vector>
 
-#include "firmware/app/config/parameter_reader.h"
-#include "firmware/app/config/value_text.h"
+#include "firmware/app/config/parameter_text.h"
 
 namespace armada {
 
@@ -24,8 +22,8 @@ class ReferenceWriter {
 
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {
-    rows_ += std::string("| `") + info.key + "` | " + info.unit + " | " + Default(info, value) + " | " +
-             Allowed(info, value) + " | " + WithoutBars(info.meaning) + " |\n";
+    rows_ += std::string("| `") + info.key + "` | " + info.unit + " | " + Quoted(DefaultText(info, value)) +
+             " | " + AllowedText(info, value) + " | " + WithoutBars(info.meaning) + " |\n";
   }
   template <class Config>
   void Table(const char* name, Config& config) {
@@ -49,34 +47,8 @@ class ReferenceWriter {
   }
 
  private:
-  template <class T>
-  static std::string Default(const ParameterInfo& info, const T& value) {
-    if (IsRequired(info, value)) return "required";
-    if constexpr (requires { value.size(); }) {
-      if (value.size() == 0) return "none";
-    } else if constexpr (std::same_as<T, double>) {
-      if (std::isnan(value)) return "none";
-    }
-    return "`" + ValueText(value) + "`";
-  }
-
-  static std::string Allowed(const ParameterInfo& info, double) { return Range(info); }
-  static std::string Allowed(const ParameterInfo& info, std::same_as<int> auto) { return Range(info); }
-  static std::string Allowed(const ParameterInfo&, std::same_as<bool> auto) { return "true, false"; }
-  static std::string Allowed(const ParameterInfo&, const std::string&) { return "text"; }
-  static std::string Allowed(const ParameterInfo& info, const std::vector<std::vector<double>>&) {
-    return "list of points, each number " + Range(info);
-  }
-  static std::string Allowed(const ParameterInfo& info, const std::vector<int>&) {
-    return "list, each " + Range(info);
-  }
-  template <int kMaxRows>
-  static std::string Allowed(const ParameterInfo& info, const BoundedVector<kMaxRows>&) {
-    return Range(info) + ", or a list";
-  }
-  template <NamedEnum Enum>
-  static std::string Allowed(const ParameterInfo&, Enum kind) {
-    return AllNames(kind);
+  static std::string Quoted(const std::string& fallback) {
+    return fallback == "required" || fallback == "none" ? fallback : "`" + fallback + "`";
   }
   /// A bar would end the cell.
   static std::string WithoutBars(std::string_view text) {
@@ -84,10 +56,6 @@ class ReferenceWriter {
     for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
     return escaped;
   }
-  static std::string Range(const ParameterInfo& info) {
-    return ValueText(info.min) + " to " + ValueText(info.max);
-  }
-
   template <class Config>
   void AddSection(const std::string& heading, const std::string& meaning, const char* name, Config& config) {
     sections_ += "\n### `" + heading + "`\n" + meaning;

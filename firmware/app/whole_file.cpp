@@ -1,0 +1,67 @@
+#include "firmware/app/whole_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace armada {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Temporary(const std::string& path) {
+  return path + ".part";
+}
+
+bool WriteTemporary(const std::string& path, const std::function<void(std::ostream&)>& write,
+                    std::string* error) {
+  const fs::path target(path);
+  std::error_code ignored;  // opening the file says what is wrong
+  if (target.has_parent_path()) fs::create_directories(target.parent_path(), ignored);
+  errno = 0;
+  std::ofstream file(Temporary(path));
+  write(file);
+  file.close();
+  if (file) return true;
+  *error = "cannot write " + path + ": " + std::strerror(errno);
+  return false;
+}
+
+// On the disk before it takes the place of the old one.
+void Sync(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  fsync(file);
+  close(file);
+}
+
+}  // namespace
+
+bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write,
+                std::string* error) {
+  if (!WriteTemporary(path, write, error)) return false;
+  Sync(Temporary(path));
+  std::error_code code;
+  fs::rename(Temporary(path), path, code);
+  if (code) *error = "cannot write " + path + ": " + code.message();
+  return !code;
+}
+
+bool CanWriteWhole(const std::string& path, std::string* error) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    *error = "cannot write " + path + ": " + std::strerror(EISDIR);
+    return false;
+  }
+  if (!WriteTemporary(
+          path, [](std::ostream&) {}, error))
+    return false;
+  fs::remove(Temporary(path), ignored);
+  return true;
+}
+
+}  // namespace armada
