@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
-#include <cmath>
+#include <Eigen/LU>
 
 #include "hil/leader_path.h"
 #include "hil/start_state.h"
@@ -21,38 +20,29 @@ class IdealArm {
         arm_(scenario.fleet.arms[index].arm),
         plant_(scenario.fleet.arms[index].arm),
         law_(control_, arm_, Begin(DrawStart(scenario, index, seed, &leader_))),
-        h_s_(h_s) {}
+        h_s_(h_s),
+        s_(SlidingVariable()) {}
 
   double time_s() const { return static_cast<double>(tick_) * h_s_; }
   JointVector q_rad() const { return FromPlant(plant_, plant_.q_rad); }
   JointVector dq_rad_s() const { return FromPlant(plant_, plant_.dq_rad_s); }
 
-  /// s of (1.3), with J# by a general decomposition.
-  JointVector s_rad_s() const {
-    const PlanarArm::Posture at = arm_.At(q_rad());
-    const JacobianMatrix J = arm_.Jacobian(at);
-    const Eigen::MatrixXd J_sharp = Eigen::MatrixXd(J).completeOrthogonalDecomposition().pseudoInverse();
-    const Zeta leader = leader_.At(time_s());
-    const JointVector phi = PrintedSubtaskVelocity(control_.subtask, arm_, q_rad(), at, J);
-    const TaskVector r = leader.v_m_s - control_.paper.alpha_1_s * (arm_.Position(at) - leader.x_m) - J * phi;
-    return dq_rad_s() - phi - J_sharp * r;
-  }
+  /// s of (1.3)
+  const JointVector& s_rad_s() const { return s_; }
 
   /// V_i1 = (s'H s + theta~' T^-1 theta~) / 2 of the proof of Theorem 2, J.
   double Storage() const {
-    const JointVector s = s_rad_s();
     const ParameterVector theta = arm_.Theta();
-    const double kinetic = s.dot(arm_.Inertia(arm_.At(q_rad()), theta) * s);
+    const double kinetic = s_.dot(arm_.Inertia(arm_.At(q_rad()), theta) * s_);
     return 0.5 * (kinetic + (law_.theta_hat() - theta).squaredNorm() / control_.adaptation.gradient_T);
   }
 
   /// dV_i1/dt as the proof has it: -s'(K_s + J'K_x J) s - s'K_r sgn(s) - s'd, W.
   double StorageRate(const JointVector& d_Nm) const {
     const GainsConfig& gains = control_.gains;
-    const JointVector s = s_rad_s();
-    const TaskVector Js = arm_.Jacobian(arm_.At(q_rad())) * s;
-    return -s.dot(gains.K_s_Nms_rad.cwiseProduct(s)) - Js.dot(gains.K_x_Ns_m.cwiseProduct(Js)) -
-           s.cwiseAbs().dot(gains.K_r_Nm) - s.dot(d_Nm);
+    const TaskVector Js = arm_.Jacobian(arm_.At(q_rad())) * s_;
+    return -s_.dot(gains.K_s_Nms_rad.cwiseProduct(s_)) - Js.dot(gains.K_x_Ns_m.cwiseProduct(Js)) -
+           s_.cwiseAbs().dot(gains.K_r_Nm) - s_.dot(d_Nm);
   }
 
   /// |x - x_0|
@@ -64,9 +54,21 @@ class IdealArm {
     const JointVector u_Nm = law_.Torque({q_rad(), dq_rad_s(), leader, leader, true, h_s_, h_s_});
     plant_.Step(ToPlant(u_Nm - d_Nm), h_s_);
     ++tick_;
+    s_ = SlidingVariable();
   }
 
  private:
+  JointVector SlidingVariable() const {
+    const JointVector q = q_rad();
+    const PlanarArm::Posture at = arm_.At(q);
+    const JacobianMatrix J = arm_.Jacobian(at);
+    const Eigen::Matrix2d JJt = J * J.transpose();
+    const Zeta leader = leader_.At(time_s());
+    const JointVector phi = PrintedSubtaskVelocity(control_.subtask, arm_, q, at, J);
+    const TaskVector r = leader.v_m_s - control_.paper.alpha_1_s * (arm_.Position(at) - leader.x_m) - J * phi;
+    return dq_rad_s() - phi - J.transpose() * (JJt.inverse() * r);
+  }
+
   ParameterVector Begin(const ArmStart& start) {
     plant_.q_rad = start.q_rad;
     plant_.dq_rad_s = start.dq_rad_s;
@@ -80,6 +82,7 @@ class IdealArm {
   PaperLaw law_;
   double h_s_;
   int tick_ = 0;
+  JointVector s_;
 };
 
 }  // namespace armada

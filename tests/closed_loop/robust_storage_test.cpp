@@ -47,7 +47,7 @@ struct Setting {
 };
 
 /// Ten seconds of one arm of benign.toml without latency, its leader known.
-std::vector<Tick> TicksOf(const Setting& setting, Push push) {
+std::vector<Tick> TicksOf(const Setting& setting, const Push& push) {
   static const ScenarioConfig kScenario = ScenarioNamed("benign");
   const LeaderPath leader(kScenario.leader);
   const ArmEntry& entry = kScenario.fleet.arms[setting.index];

@@ -75,10 +75,8 @@ constexpr double kLeftBySampling_J = 3e-3;
 
 TEST(StorageFunction, OfThePrintedLawFallsUnderEveryDisturbanceWithinItsCondition) {
   for (const size_t index : kAllButArm5) {
-    for (const uint64_t seed : {1U, 2U}) {
-      EXPECT_LT(Watch(index, seed, kFine_s, 2.0, WorstInTheTwoNorm(60.0)).rise_J, kLeftBySampling_J);
-      EXPECT_LT(Watch(index, seed, kFine_s, 2.0, Uniform(40.0, kFine_s, seed)).rise_J, kLeftBySampling_J);
-    }
+    EXPECT_LT(Watch(index, 1, kFine_s, 1.5, WorstInTheTwoNorm(60.0)).rise_J, kLeftBySampling_J);
+    EXPECT_LT(Watch(index, 2, kFine_s, 1.5, Uniform(40.0, kFine_s, 2)).rise_J, kLeftBySampling_J);
   }
 }
 
@@ -103,7 +101,7 @@ TEST(StorageFunction, FallsAtTheRateOfTheProof) {
 TEST(StorageFunction, RisesWithinATickByTheSquareOfThePeriodOnly) {
   for (const size_t index : kAllButArm5) {
     const auto step_rise_J = [&](double h_s) {
-      return Watch(index, 1, h_s, 2.0, Uniform(40.0, h_s, 1)).step_rise_J;
+      return Watch(index, 1, h_s, 1.0, Uniform(40.0, h_s, 1)).step_rise_J;
     };
     EXPECT_NEAR(std::log2(step_rise_J(4.0 * kFine_s) / step_rise_J(kFine_s)), 4.0, 0.8)
         << "arm " << index + 1;
@@ -119,13 +117,14 @@ TEST(StorageFunction, AtThePapersPeriodIsNoLongerOne) {
 
 TEST(TheoremTwo, ErrorsGoToWhatSamplingLeaves) {
   for (const size_t index : kTwoJoints) {
-    const auto e_m = [&](double h_s) { return Watch(index, 2, h_s, 5.0, Uniform(40.0, h_s, 2)).e_end_m; };
-    EXPECT_LT(e_m(kFine_s), 0.8e-3) << "arm " << index + 1;
-    EXPECT_GT(e_m(4.0 * kFine_s), 1.5 * e_m(kFine_s)) << "arm " << index + 1;
+    const auto e_end_m = [&](double h_s) { return Watch(index, 2, h_s, 4.0, Uniform(40.0, h_s, 2)).e_end_m; };
+    const double fine_m = e_end_m(kFine_s);
+    EXPECT_LT(fine_m, 0.8e-3) << "arm " << index + 1;
+    EXPECT_GT(e_end_m(4.0 * kFine_s), 1.5 * fine_m) << "arm " << index + 1;
   }
   // With three joints theta_hat is farther off and T = 0.1 is slow: the theorem promises no rate.
   for (const size_t index : kThreeJoints) {
-    const Watched end = Watch(index, 2, kFine_s, 5.0, Uniform(40.0, kFine_s, 2));
+    const Watched end = Watch(index, 2, kFine_s, 4.0, Uniform(40.0, kFine_s, 2));
     EXPECT_LT(end.e_end_m, 15e-3) << "arm " << index + 1;
     EXPECT_LT(end.s_end_rad_s, 0.1) << "arm " << index + 1 << ": |e_s| <= |s|";
   }
@@ -145,7 +144,7 @@ bool CheckedToHold(double amplitude_Nm, size_t index) {
 TEST(KrMargin, MissedInTheTwoNormAloneDoesNoHarm) {
   for (const size_t index : kThreeJoints) {
     EXPECT_FALSE(CheckedToHold(55.0, index)) << "|d|_2 up to 95 N m, K_r = 60 N m";
-    EXPECT_LT(Watch(index, 1, kFine_s, 2.0, WorstInEachJoint(55.0)).rise_J, kLeftBySampling_J);
+    EXPECT_LT(Watch(index, 1, kFine_s, 1.5, WorstInEachJoint(55.0)).rise_J, kLeftBySampling_J);
   }
 }
 
@@ -153,8 +152,8 @@ TEST(KrMargin, MissedInAJointEndsTheClaim) {
   for (const size_t index : kAllButArm5) {
     EXPECT_TRUE(CheckedToHold(30.0, index));
     EXPECT_FALSE(CheckedToHold(100.0, index));
-    const Watched within = Watch(index, 1, kFine_s, 4.0, WorstInEachJoint(30.0));
-    const Watched beyond = Watch(index, 1, kFine_s, 4.0, WorstInEachJoint(100.0));
+    const Watched within = Watch(index, 1, 2.0 * kFine_s, 3.0, WorstInEachJoint(30.0));
+    const Watched beyond = Watch(index, 1, 2.0 * kFine_s, 3.0, WorstInEachJoint(100.0));
     EXPECT_LT(within.rise_J, kLeftBySampling_J) << "arm " << index + 1;
     EXPECT_GT(beyond.rise_J, 30.0 * kLeftBySampling_J) << "arm " << index + 1;
     EXPECT_GT(beyond.s_end_rad_s, 0.1) << "arm " << index + 1;
