@@ -61,7 +61,8 @@ void MitDrive::BringUp(int64_t now_ns, FrameList* out) {
     return Enter(Phase::kEnded);
   }
   if (phase_ == Phase::kIdle) Enter(Phase::kDisable);
-  if (faulty() && phase_ != Phase::kTorque && ++faults_ > config_.bring_up_attempts) {
+  // An attempt takes as many ticks as the replies that confirm it.
+  if (faulty() && phase_ != Phase::kTorque && ++faults_ > kRepliesToConfirm * config_.bring_up_attempts) {
     refused_ = true;
     return Enter(Phase::kEnded);
   }
