@@ -11,8 +11,7 @@ namespace {
 class News {
  public:
   explicit News(const FleetConfig& fleet)
-      : fleet_(fleet),
-        ticks_each_(fleet.topologies.size() == 1
+      : ticks_each_(fleet.topologies.size() == 1
                         ? std::numeric_limits<double>::infinity()
                         : std::max(1.0, std::round(fleet.topology_period_s / fleet.timing.period_s))),
         age_(fleet.arms.size(), std::numeric_limits<double>::infinity()) {
@@ -55,7 +54,6 @@ class News {
     }
   }
 
-  const FleetConfig& fleet_;
   std::vector<Digraph> graphs_;
   double ticks_each_;
   std::vector<double> age_;

@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <numbers>
 
-#include "firmware/app/config/value_text.h"
-
 namespace armada {
 namespace {
 
@@ -125,26 +123,21 @@ std::vector<Finding> FindingsOfSensors(const ScenarioConfig& scenario) {
   const EmulatedDriveConfig& drive = scenario.drive;
   std::vector<Finding> findings;
   for (const ArmEntry& entry : scenario.fleet.arms) {
-    const SensorConfig& declared = entry.control.sensor;
-    const auto judge = [&](const std::string& what, const std::string& unit, double measured,
-                           double believed) {
-      if (measured <= kWorse * believed) return;
-      findings.push_back({Severity::kWarning, "arm " + std::to_string(entry.id) + ": its drives measure " +
-                                                  what + " to " + ValueText(measured) + " " + unit +
-                                                  ", worse than control.sensor says, " +
-                                                  ValueText(believed)});
-    };
+    Collector found(entry.id);
+    const SensorConfig& believed = entry.control.sensor;
     for (size_t i = 0; i < entry.joints.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const double counts_per_joint_turn = drive.encoder_counts_per_turn * entry.joints[i].gear_ratio;
-      const double step_rad =
-          counts_per_joint_turn > 0.0 ? 2.0 * std::numbers::pi / counts_per_joint_turn : 0.0;
-      const std::string of_joint = " of joint " + std::to_string(i + 1);
-      judge("the position" + of_joint, "rad", step_rad / std::sqrt(12.0),
-            declared.position_deviation_rad[row]);
-      judge("the velocity" + of_joint, "rad/s", drive.velocity_noise_rad_s,
-            declared.velocity_deviation_rad_s[row]);
+      const double counts = drive.encoder_counts_per_turn * entry.joints[i].gear_ratio;
+      const double position_rad = counts > 0.0 ? 2.0 * std::numbers::pi / counts / std::sqrt(12.0) : 0.0;
+      const std::string joint = "joint " + std::to_string(i + 1) + "'s ";
+      if (position_rad > kWorse * believed.position_deviation_rad[row]) {
+        found.Warning(joint + "encoder is worse than control.sensor.position_deviation_rad says");
+      }
+      if (drive.velocity_noise_rad_s > kWorse * believed.velocity_deviation_rad_s[row]) {
+        found.Warning(joint + "velocity is worse than control.sensor.velocity_deviation_rad_s says");
+      }
     }
+    findings.insert(findings.end(), found.findings().begin(), found.findings().end());
   }
   return findings;
 }
