@@ -45,7 +45,8 @@ TEST(OtherFleets, ATwoWayRingDoesNotFeedErrorsBack) {
   for (int i = 1; i <= 7; ++i) {
     const std::string here = std::to_string(i);
     const std::string next = std::to_string(i % 7 + 1);
-    edges += "{from=" + here + ",to=" + next + "},{from=" + next + ",to=" + here + "},";
+    for (const auto& [from, to] : {std::pair{here, next}, {next, here}})
+      edges.append("{from=").append(from).append(",to=").append(to).append("},");
   }
   const RunMetrics metrics = Simulate("paper", 1, Short({"graph=[{pins=[1],edges=[" + edges + "]}]"}));
   EXPECT_TRUE(metrics.ok);
