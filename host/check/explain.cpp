@@ -1,6 +1,7 @@
 #include "host/check/explain.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 namespace armada {
