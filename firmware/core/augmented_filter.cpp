@@ -35,7 +35,8 @@ void AugmentedFilter::Start(const JointState& sample) {
   joints_ = sample;
   P_xx_.setZero();
   P_xx_.diagonal().head(n) = sensor_.position_deviation_rad.cwiseAbs2();
-  P_xx_.diagonal().tail(n) = sensor_.velocity_deviation_rad_s.cwiseAbs2();
+  // An unbounded uncertainty of dq would take the digits of that of q in the first update.
+  P_xx_.diagonal().tail(n) = sensor_.velocity_deviation_rad_s.cwiseMin(sensor_.start_speed_rad_s).cwiseAbs2();
 }
 
 void AugmentedFilter::Update(const PlanarArm& arm, const Applied& applied, const JointState& sample,

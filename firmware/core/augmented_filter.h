@@ -9,6 +9,7 @@ namespace armada {
 struct SensorConfig {
   JointVector position_deviation_rad = JointVector::Constant(1, 1e-5);
   JointVector velocity_deviation_rad_s = JointVector::Constant(1, 1e-3);
+  double start_speed_rad_s = 10.0;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -20,6 +21,9 @@ struct SensorConfig {
     parameter({"velocity_deviation_rad_s", "rad/s", 1e-7, 1e6,
                "the same of a sample of dq; very large: the drive's velocity is not used"},
               velocity_deviation_rad_s);
+    parameter({"start_speed_rad_s", "rad/s", 1e-3, 1e3,
+               "standard deviation of dq at the start where its sample is worth less"},
+              start_speed_rad_s);
   }
 
   /// Single values spread over `dof` joints.

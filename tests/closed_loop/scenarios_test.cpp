@@ -90,5 +90,12 @@ TEST(Disturbances, OfEveryKindAreWithstood) {
   }
 }
 
+TEST(HonestPath, HoldsWithoutTheDrivesVelocity) {
+  const RunMetrics metrics = Simulate(
+      "honest", 13, {"control.sensor.velocity_deviation_rad_s=1e6", "seconds=8.0", "window_start_s=6.0"});
+  EXPECT_TRUE(metrics.ok);
+  EXPECT_LT(metrics.fleet_rms_m, 0.9e-3);
+}
+
 }  // namespace
 }  // namespace armada
