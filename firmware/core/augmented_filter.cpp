@@ -46,6 +46,17 @@ void AugmentedFilter::Update(const PlanarArm& arm, const Applied& applied, const
   const UnknownVector db = Correct(predicted, sample);
   theta_hat += db.head(arm.parameter_count());
   d_hat_Nm_ += db.tail(arm.dof());
+  // The likeliest state within the bounds: with each component of d that is brought back to its bound, theta
+  // moves by what the covariance makes of that.
+  const Eigen::Index p = arm.parameter_count();
+  for (Eigen::Index i = 0; i < arm.dof(); ++i) {
+    const double bounded_Nm = std::clamp(d_hat_Nm_[i], -disturbance_.bound_Nm, disturbance_.bound_Nm);
+    const double variance = P_bb_(p + i, p + i);
+    if (bounded_Nm == d_hat_Nm_[i] || variance <= 0.0) continue;
+    const UnknownVector back = P_bb_.col(p + i) * ((bounded_Nm - d_hat_Nm_[i]) / variance);
+    theta_hat += back.head(p);
+    d_hat_Nm_ += back.tail(arm.dof());
+  }
   d_hat_Nm_ = d_hat_Nm_.cwiseMax(-disturbance_.bound_Nm).cwiseMin(disturbance_.bound_Nm);
 }
 
