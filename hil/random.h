@@ -24,6 +24,12 @@ constexpr double Uniform(uint64_t bits, double low, double high) {
 }
 
 /// Purposes: separate streams of one seed.
-enum RandomPurpose : uint64_t { kStartStream = 1, kDisturbanceStream, kNetworkStream, kSensorStream, kFleetStream };
+enum RandomPurpose : uint64_t {
+  kStartStream = 1,
+  kDisturbanceStream,
+  kNetworkStream,
+  kSensorStream,
+  kFleetStream
+};
 
 }  // namespace armada
