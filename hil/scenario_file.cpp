@@ -94,7 +94,7 @@ std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const 
 
 // What the arms have learnt, as start.learned says.
 void LoadLearned(const ConfigCursor& at, ScenarioConfig* scenario, std::vector<ConfigError>* errors) {
-  if (scenario->start.learned == "none") return;
+  if (scenario->start.learned == StartConfig().learned) return;
   const std::filesystem::path folder = std::filesystem::absolute(
       (std::filesystem::path(scenario->file).parent_path() / scenario->start.learned).lexically_normal());
   bool found = false;

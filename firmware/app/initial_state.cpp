@@ -1,14 +1,13 @@
 #include "firmware/app/initial_state.h"
 
 #include <Eigen/Cholesky>
-#include <array>
-#include <cstdio>
 #include <sstream>
 
 #include "firmware/app/config/fleet_layout.h"
 #include "firmware/app/config/parameter_reader.h"
 #include "firmware/app/config/toml_parser.h"
 #include "firmware/app/config/toml_writer.h"
+#include "firmware/app/digest.h"
 #include "firmware/app/whole_file.h"
 
 namespace armada {
@@ -73,11 +72,7 @@ std::string DigestOf(const ArmEntry& arm) {
   entry.obstacle.clear();
   std::ostringstream text;
   WriteToml(&entry, text);
-  uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
-  for (const char byte : text.str()) digest = (digest ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
-  std::array<char, 17> hexadecimal{};
-  std::snprintf(hexadecimal.data(), hexadecimal.size(), "%016llx", static_cast<unsigned long long>(digest));
-  return hexadecimal.data();
+  return Digest(text.str());
 }
 
 std::optional<ArmInitialState> LoadInitialState(const std::string& path, const ArmEntry& arm,

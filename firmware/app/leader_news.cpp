@@ -74,18 +74,4 @@ std::vector<double> OldestLeaderNews(const FleetConfig& fleet) {
   return oldest_s;
 }
 
-Digraph UnionGraph(const FleetConfig& fleet) {
-  Digraph all(static_cast<int>(fleet.arms.size()));
-  for (size_t k = 0; k < fleet.topologies.size(); ++k) {
-    const Digraph graph = fleet.Graph(k);
-    for (int i = 0; i < graph.node_count(); ++i) {
-      if (graph.pin(i) > 0.0) all.SetPin(i, graph.pin(i));
-      for (int j = 0; j < graph.node_count(); ++j) {
-        if (graph.weight(i, j) > 0.0) all.SetWeight(i, j, graph.weight(i, j));
-      }
-    }
-  }
-  return all;
-}
-
 }  // namespace armada

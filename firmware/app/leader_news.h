@@ -12,7 +12,4 @@ namespace armada {
 /// @pre a leader.
 std::vector<double> OldestLeaderNews(const FleetConfig& fleet);
 
-/// All links and pins of all topologies at once.
-Digraph UnionGraph(const FleetConfig& fleet);
-
 }  // namespace armada

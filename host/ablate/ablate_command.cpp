@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "firmware/app/exit_codes.h"
+#include "firmware/app/whole_file.h"
 #include "hil/scenario_file.h"
 #include "host/ablate/ablation.h"
 #include "host/sim/simulation.h"
@@ -45,6 +46,11 @@ int RunAblateCommand(const AblateOptions& options) {
   }
   const auto whole = options.scenario.Load();
   if (!whole) return kExitBadConfig;
+  std::string error;
+  if (!options.json.empty() && !CanWriteWhole(options.json, &error)) {
+    std::cerr << "armada ablate: " << error << '\n';
+    return kExitFailed;
+  }
   const Prepared prepared = Prepare(*whole, options.scenario);
   Ablation ablation{whole->name, whole->file, options.scenario.Overrides(), *seeds, {}};
   try {
@@ -58,13 +64,12 @@ int RunAblateCommand(const AblateOptions& options) {
       });
       ablation.rows.push_back(Compare(prepared.rows[ablation.rows.size()], table, tables.front()));
     }
-  } catch (const std::system_error& error) {
-    std::cerr << "armada ablate: " << error.what() << '\n';
+  } catch (const std::system_error& problem) {
+    std::cerr << "armada ablate: " << problem.what() << '\n';
     return kExitFailed;
   }
   ablation.rows.insert(ablation.rows.end(), prepared.refused.begin(), prepared.refused.end());
   PrintAblation(ablation, std::cout);
-  std::string error;
   if (!options.json.empty() && !WriteJson(ToJson(ablation), options.json, &error)) {
     std::cerr << "armada ablate: " << error << '\n';
     return kExitFailed;

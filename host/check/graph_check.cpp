@@ -70,6 +70,21 @@ TopologyCheck CheckTopology(const FleetConfig& fleet, size_t index) {
   return check;
 }
 
+// All links and pins of all topologies at once.
+Digraph UnionGraph(const FleetConfig& fleet) {
+  Digraph all(static_cast<int>(fleet.arms.size()));
+  for (size_t k = 0; k < fleet.topologies.size(); ++k) {
+    const Digraph graph = fleet.Graph(k);
+    for (int i = 0; i < graph.node_count(); ++i) {
+      if (graph.pin(i) > 0.0) all.SetPin(i, graph.pin(i));
+      for (int j = 0; j < graph.node_count(); ++j) {
+        if (graph.weight(i, j) > 0.0) all.SetWeight(i, j, graph.weight(i, j));
+      }
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 bool TopologyCheck::holds() const {

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "firmware/app/exit_codes.h"
+#include "firmware/app/whole_file.h"
 #include "host/floor/floor.h"
 #include "host/metrics.h"
 #include "host/sweep/seed_jobs.h"
@@ -79,13 +80,17 @@ int RunFloorCommand(const FloorOptions& options) {
   const auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
   if (!HasFloor(*scenario)) return kExitUsage;
+  std::string error;
+  if (!options.json.empty() && !CanWriteWhole(options.json, &error)) {
+    std::cerr << "armada floor: " << error << '\n';
+    return kExitFailed;
+  }
   FloorSweep sweep{*seeds, std::vector<FloorResult>(seeds->size())};
   RunSeedJobs(sweep.seeds, options.jobs, [&](size_t index, uint64_t seed) {
     sweep.floors[index] = Floor(*scenario, seed);
     return true;
   });
   Print(*scenario, sweep);
-  std::string error;
   if (!options.json.empty() &&
       !WriteJson(ToJson(*scenario, options.scenario.Overrides(), sweep), options.json, &error)) {
     std::cerr << "armada floor: " << error << '\n';

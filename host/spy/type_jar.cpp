@@ -2,10 +2,9 @@
 
 #include <stdlib.h>
 
-#include <cstdint>
-#include <cstdio>
 #include <fstream>
 
+#include "firmware/app/digest.h"
 #include "host/process_group.h"
 #include "host/spy/java_packages.h"
 
@@ -15,17 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::minutes kPatience{2};
-
-// FNV-1a, 64 bits.
-uint64_t Checksum(const std::vector<MessageType>& types) {
-  uint64_t hash = 0xcbf29ce484222325;
-  for (const MessageType& type : types) {
-    for (const char c : type.file + '\0' + type.text + '\0') {
-      hash = (hash ^ static_cast<uint8_t>(c)) * 0x100000001b3;
-    }
-  }
-  return hash;
-}
 
 /// A folder of this process alone, gone with the object.
 class ScratchFolder {
@@ -101,9 +89,9 @@ std::optional<fs::path> CacheDirectory(std::string* error) {
 }
 
 fs::path TypeJarPath(const std::vector<MessageType>& types, const fs::path& cache) {
-  char checksum[17];
-  std::snprintf(checksum, sizeof(checksum), "%016llx", static_cast<unsigned long long>(Checksum(types)));
-  return cache / ("lcmtypes-" + std::string(checksum) + ".jar");
+  std::string text;
+  for (const MessageType& type : types) text += type.file + '\0' + type.text + '\0';
+  return cache / ("lcmtypes-" + Digest(text) + ".jar");
 }
 
 bool MakeTypeJar(const std::vector<MessageType>& types, const fs::path& cache, std::string* error) {

@@ -36,22 +36,23 @@ void ExpectExtrapolation(const EstimateBound& bound, double snap_m_s4, double ag
   EXPECT_NEAR(bound.a_m_s2, snap_m_s4 * std::pow(age_s, 2) / 2.0, 1e-10);
 }
 
-TEST(EstimateBound, OnALineIsOneExtrapolationOverTheHops) {
-  const ScenarioConfig scenario = PaperOnALine();
-  const double snap = LeaderPath(scenario.leader).Bounds().snap_m_s4;
-  const auto bounds = Bounds(scenario);
+// Arm i is i + 1 hops from the leader.
+void ExpectOneExtrapolationAlong(const ScenarioConfig& line, double hop_s) {
+  const double snap = LeaderPath(line.leader).Bounds().snap_m_s4;
+  const auto bounds = Bounds(line);
   for (size_t i = 0; i < bounds.size(); ++i)
-    ExpectExtrapolation(bounds[i], snap, 0.01 * static_cast<double>(i + 1));
+    ExpectExtrapolation(bounds[i], snap, hop_s * static_cast<double>(i + 1));
+}
+
+TEST(EstimateBound, OnALineIsOneExtrapolationOverTheHops) {
+  ExpectOneExtrapolationAlong(PaperOnALine(), 0.01);
 }
 
 TEST(EstimateBound, GrowsWithTheDelayOfEachHop) {
   ScenarioConfig scenario = PaperOnALine();
   scenario.network.delay_ticks = 3;
-  const double snap = LeaderPath(scenario.leader).Bounds().snap_m_s4;
   scenario.fleet.estimator.age_max_s = 1.0;
-  const auto bounds = Bounds(scenario);
-  for (size_t i = 0; i < bounds.size(); ++i)
-    ExpectExtrapolation(bounds[i], snap, 0.04 * static_cast<double>(i + 1));
+  ExpectOneExtrapolationAlong(scenario, 0.04);
 }
 
 TEST(EstimateBound, OfADelayThatLooksLikeAnOffsetOfClocksIsTheLeadersWayMeanwhile) {

@@ -18,9 +18,12 @@ bool Expected(const ConfigCursor& at, const char* what, std::vector<ConfigError>
 
 }  // namespace
 
+std::string NumbersText(const ParameterInfo& info) {
+  return ValueText(info.min) + " to " + ValueText(info.max);
+}
+
 std::string RangeText(const ParameterInfo& info) {
-  std::string text = ValueText(info.min) + " to " + ValueText(info.max);
-  return *info.unit == '\0' ? text : text + " " + info.unit;
+  return *info.unit == '\0' ? NumbersText(info) : NumbersText(info) + " " + info.unit;
 }
 
 bool ReadValue(const ConfigCursor& at, const ParameterInfo&, bool* value, std::vector<ConfigError>* errors) {

@@ -74,7 +74,9 @@ inline bool IsRequired(const ParameterInfo&, const std::string& value) {
   return value.empty();
 }
 
-/// "0.0001 to 1 s": the legal range of a number.
+/// "0.0001 to 1": the legal range of a number.
+std::string NumbersText(const ParameterInfo& info);
+/// "0.0001 to 1 s": the same with its unit.
 std::string RangeText(const ParameterInfo& info);
 
 /// Visitor that fills a Config struct from a table, and collects every mistake in it. Call Finish() last.

@@ -12,11 +12,6 @@ namespace armada {
 
 // What a parameter's documentation says of its values.
 
-/// "0.0001 to 1", without the unit.
-inline std::string NumbersText(const ParameterInfo& info) {
-  return ValueText(info.min) + " to " + ValueText(info.max);
-}
-
 /// The legal values.
 inline std::string AllowedText(const ParameterInfo& info, double) {
   return NumbersText(info);
