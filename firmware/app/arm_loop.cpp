@@ -38,6 +38,7 @@ bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
     SleepUntil(tick_ns);
     if (*stop != 0) return false;
     TakeWaitingFrames();
+    TakeWaitingMessages();
     out_.Clear();
     ready = node_->BringUp(tick_ns, &out_);
     Send();
@@ -79,7 +80,7 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
   Send();
   const int64_t feedback_ns = AwaitSamples(tick_ns + feedback_timeout_ns_);
   if (!node_->SamplesComplete()) ++report_.incomplete_samples;
-  link_->Drain([&](const LcmMessage& message) { node_->OnMessage(message); });
+  TakeWaitingMessages();
 
   out_.Clear();
   node_->Step(tick_ns, &out_);
@@ -164,6 +165,10 @@ void ArmLoop::TakeWaitingFrames() {
     if (status == BusStatus::kTimeout || status == BusStatus::kDown) return;
     if (status == BusStatus::kOk) node_->OnFrame(frame);
   }
+}
+
+void ArmLoop::TakeWaitingMessages() {
+  link_->Drain([&](const LcmMessage& message) { node_->OnMessage(message); });
 }
 
 void ArmLoop::PublishTelemetry() {

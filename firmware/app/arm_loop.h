@@ -52,6 +52,8 @@ class ArmLoop {
   int64_t AwaitSamples(int64_t deadline_ns);
   /// Takes what is waiting: heartbeats count, samples from before the request must not.
   void TakeWaitingFrames();
+  /// Hears the neighbours, also while the drives come up: the kernel's queue is short.
+  void TakeWaitingMessages();
   void PublishTelemetry();
 
   ArmNode* node_;

@@ -11,9 +11,9 @@
 namespace armada {
 namespace {
 
-// The kernel doubles this for its own bookkeeping and charges at least 768 bytes a datagram: 277 of the
-// smallest, which one Drain can empty; and nine ticks of seven arms' traffic, which a stalled loop can sleep
-// through.
+// The kernel doubles this for its own bookkeeping and charges 768 bytes for the smallest datagram, 1280 for a
+// state, 2304 for telemetry: 277 of the smallest, which one Drain can empty; and eight ticks of seven arms'
+// traffic, which a stalled loop can sleep through.
 constexpr int kQueueBytes = 104 * 1024;
 
 int64_t ToNs(const timespec& time) {
