@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "firmware/app/exit_codes.h"
+#include "firmware/app/link_identity.h"
 #include "firmware/app/realtime.h"
 #include "firmware/link/channels.h"
 #include "firmware/link/lcm_endpoint.h"
@@ -35,6 +36,7 @@ struct Options {
   std::vector<std::string> sets;
   int64_t epoch_ns = 0;  // 0: with the first message
   double seconds = std::numeric_limits<double>::infinity();
+  std::string state = DefaultStateFolder();
   int priority = 80;
 };
 
@@ -77,7 +79,7 @@ struct Tally {
   int64_t skipped = 0;  // grid times that passed before the process woke up: never sent late in a burst
 };
 
-Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, LcmEndpoint& lcm) {
+Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, Sealer* sealer, LcmEndpoint& lcm) {
   Tally tally;
   MessageBuffer buffer;
   int64_t k = grid.Next(MonotonicNow());
@@ -88,7 +90,9 @@ Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, LcmEndpo
     leader_t message = MessageAt(path, grid.PathTime(k));
     message.stamp_ns = grid.Stamp(k);
     message.sequence = tally.sent + 1;
-    lcm.Publish(kLeaderChannel, Encode(message, &buffer)) ? ++tally.sent : ++tally.refused;
+    auto encoded = Encode(message, &buffer);
+    if (sealer != nullptr) encoded = sealer->Seal(kLeaderChannel, encoded, &buffer);
+    lcm.Publish(kLeaderChannel, encoded) ? ++tally.sent : ++tally.refused;
 
     const int64_t next = std::max(k + 1, grid.Next(MonotonicNow()));
     tally.skipped += next - (k + 1);
@@ -110,6 +114,17 @@ int Run(const Options& options) {
     return kExitUsage;
   }
   std::string error;
+  std::optional<LinkIdentity> identity;
+  if (!TakeIdentity(scenario->fleet.link, kLeaderSender, options.state, &identity, &error)) {
+    std::cerr << "armada-leader: " << error << '\n';
+    return kExitBadConfig;
+  }
+  std::optional<Sealer> sealer;
+  if (identity) {
+    sealer.emplace(*identity, kLeaderSender);
+  } else {
+    std::cerr << "armada-leader: " << WarningOf(scenario->fleet.link) << '\n';
+  }
   const auto url = ParseLcmUrl(scenario->fleet.link.lcm_url, &error);
   const auto lcm = url ? LcmEndpoint::Open(*url, &error) : nullptr;
   if (!lcm) {
@@ -124,7 +139,8 @@ int Run(const Options& options) {
   const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : first_ns;
   std::cout << "armada-leader: " << kLeaderChannel << " at " << rate_hz << " Hz on " << ToString(*url)
             << ", epoch " << epoch_ns << " ns" << std::endl;
-  const Tally tally = Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, *lcm);
+  const Tally tally = Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds,
+                              sealer ? &*sealer : nullptr, *lcm);
   std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
             << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
   return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;
@@ -144,6 +160,8 @@ int main(int argc, char** argv) {
                  "length of the run from the epoch; default: until SIGINT or SIGTERM")
       ->check(CLI::Range(1e-3, 1e9));
   app.add_option("--set", options.sets, "key=value in place of the scenario's; may be repeated")->expected(1);
+  app.add_option("--state", options.state, "folder for what must survive restarts: the number of starts")
+      ->capture_default_str();
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));
   try {

@@ -11,6 +11,7 @@
 #include "host/check.h"
 #include "host/fleet/fleet_command.h"
 #include "host/floor/floor_command.h"
+#include "host/key_command.h"
 #include "host/report_command.h"
 #include "host/run/run_command.h"
 #include "host/sim/sim_command.h"
@@ -143,6 +144,7 @@ int main(int argc, char** argv) {
 
   AddCanCommand(&app, &code);
   AddFleetCommand(&app, &code);
+  AddKeyCommand(&app, &code);
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
     WriteParameterReference(std::cout);

@@ -27,9 +27,7 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
       transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
       transmit_failures_max_(timing.transmit_failures_max),
-      epoch_ns_(epoch_ns),
-      estimate_channel_(EstimateChannel(node->id())),
-      telemetry_channel_(TelemetryChannel(node->id())) {}
+      epoch_ns_(epoch_ns) {}
 
 bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
   bool ready = false;
@@ -72,7 +70,7 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
 }
 
 void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
-  link_->Publish(estimate_channel_, node_->EncodeEstimate(tick_ns, &buffer_));
+  link_->Publish(node_->estimate_channel(), node_->EncodeEstimate(tick_ns, &buffer_));
   TakeWaitingFrames();
   out_.Clear();
   const int64_t request_ns = MonotonicNow();
@@ -182,8 +180,8 @@ void ArmLoop::PublishTelemetry() {
   telemetry_.can_dropped = static_cast<int64_t>(can.dropped_queue_full + can.dropped_late);
   const LcmCounters& lcm = link_->counters();
   telemetry_.lcm_received = static_cast<int64_t>(lcm.received);
-  telemetry_.lcm_rejected = node_->rejected_messages() + static_cast<int64_t>(lcm.malformed);
-  link_->Publish(telemetry_channel_, Encode(telemetry_, &buffer_));
+  telemetry_.lcm_rejected = node_->rejected_messages().total() + static_cast<int64_t>(lcm.malformed);
+  link_->Publish(node_->telemetry_channel(), node_->EncodeTelemetry(telemetry_, &buffer_));
 }
 
 }  // namespace armada

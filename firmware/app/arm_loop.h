@@ -6,7 +6,6 @@
 #include "firmware/app/arm_node.h"
 #include "firmware/app/duration_histogram.h"
 #include "firmware/can/bus.h"
-#include "firmware/link/channels.h"
 #include "firmware/link/lcm_endpoint.h"
 
 namespace armada {
@@ -64,8 +63,6 @@ class ArmLoop {
   int64_t transmit_timeout_ns_;
   int transmit_failures_max_;
   int64_t epoch_ns_;
-  ArmChannel estimate_channel_;
-  ArmChannel telemetry_channel_;
   FrameList out_;
   MessageBuffer buffer_{};
   telemetry_t telemetry_{};

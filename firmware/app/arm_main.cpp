@@ -13,6 +13,7 @@
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/heap_counter.h"
 #include "firmware/app/initial_state.h"
+#include "firmware/app/link_identity.h"
 #include "firmware/app/loop_report.h"
 #include "firmware/app/realtime.h"
 #include "firmware/app/whole_file.h"
@@ -41,6 +42,7 @@ struct Options {
   double seconds = 0.0;
   std::string initial;
   std::string learned;
+  std::string state = DefaultStateFolder();
   std::string json;
   int priority = 80;
 };
@@ -72,6 +74,12 @@ int Run(const Options& options) {
 
   std::string error;
   if (!options.learned.empty() && !CanWriteWhole(options.learned, &error)) return Fail(options, error);
+  std::optional<LinkIdentity> identity;
+  if (!TakeIdentity(fleet->link, options.arm_id, options.state, &identity, &error)) {
+    std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, error.c_str());
+    return kExitBadConfig;
+  }
+  if (!identity) std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, WarningOf(fleet->link).c_str());
   const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
   const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
   if (!link) return Fail(options, error);
@@ -88,7 +96,8 @@ int Run(const Options& options) {
                                : MonotonicNow() + static_cast<int64_t>(fleet->timing.bring_up_s * 1e9);
   const int64_t end_ns = options.seconds > 0.0 ? epoch_ns + static_cast<int64_t>(options.seconds * 1e9)
                                                : std::numeric_limits<int64_t>::max();
-  const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns);
+  const auto node =
+      std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, identity);
   const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), fleet->timing, epoch_ns);
   if (!loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
@@ -132,6 +141,8 @@ int main(int argc, char** argv) {
                  "file with zeta(0) and theta_hat(0), or what an earlier run has learnt; default: nominal");
   app.add_option("--learned", options.learned,
                  "write what the arm learns of its dynamics here, at the end of a run without a fault");
+  app.add_option("--state", options.state, "folder for what must survive restarts: the number of starts")
+      ->capture_default_str();
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));

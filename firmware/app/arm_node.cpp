@@ -5,12 +5,11 @@
 #include <limits>
 
 #include "firmware/can/make_drive.h"
-#include "firmware/link/channels.h"
 
 namespace armada {
 namespace {
 
-constexpr int kLeader = 0;
+constexpr int kLeader = kLeaderSender;
 constexpr float kNoLeader = -1.0f;  // in a message: no leader state is behind this estimate
 
 double Seconds(int64_t duration_ns) {
@@ -29,9 +28,13 @@ TaskVector ToTask(const double (&from)[3]) {
 
 }  // namespace
 
-ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns)
+ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns,
+                 const std::optional<LinkIdentity>& identity)
     : id_(fleet.arms[index].id),
-      shared_clock_(fleet.link.shared_clock),
+      estimate_channel_(EstimateChannel(id_)),
+      telemetry_channel_(TelemetryChannel(id_)),
+      link_(fleet.link),
+      estimator_(fleet.estimator),
       timing_(fleet.timing),
       schedule_(fleet.Schedule()),
       epoch_ns_(epoch_ns),
@@ -39,24 +42,27 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
       controller_(fleet.ControllerConfig(index), initial) {
   for (size_t topology = 0; topology < fleet.topologies.size(); ++topology) {
     for (const Pin& pin : fleet.topologies[topology].pins) {
-      if (pin.arm == id_) ListenTo(fleet, kLeader, topology, pin.weight);
+      if (pin.arm == id_) ListenTo(fleet, kLeader, topology, pin.weight, identity);
     }
     for (const Edge& edge : fleet.topologies[topology].edges) {
-      if (edge.to == id_) ListenTo(fleet, edge.from, topology, edge.weight);
+      if (edge.to == id_) ListenTo(fleet, edge.from, topology, edge.weight, identity);
     }
   }
   const auto dof = static_cast<Eigen::Index>(drives_.size());
   input_.q_rad = JointVector::Zero(dof);
   input_.dq_rad_s = JointVector::Zero(dof);
   input_.neighbours.count = static_cast<int>(sources_.size());
+  if (identity) sealer_.emplace(*identity, id_);
 }
 
-void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight) {
+void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight,
+                       const std::optional<LinkIdentity>& identity) {
   auto source =
       std::find_if(sources_.begin(), sources_.end(), [&](const Source& s) { return s.arm_id == arm_id; });
   if (source == sources_.end()) {
-    sources_.push_back({.arm_id = arm_id, .clock = ClockOffset(fleet.link.clock)});
+    sources_.push_back({.arm_id = arm_id, .seal = std::nullopt, .clock = ClockOffset(fleet.link.clock)});
     source = sources_.end() - 1;
+    if (identity) source->seal.emplace(identity->key, arm_id);
   }
   source->weight[topology] = weight;
 }
@@ -93,7 +99,13 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
   Copy(controller_.estimator().jerk_m_s3(), message.jerk_m_s3);
-  return Encode(message, buffer);
+  const auto encoded = Encode(message, buffer);
+  return sealer_ ? sealer_->Seal(estimate_channel_, encoded, buffer) : encoded;
+}
+
+std::span<const uint8_t> ArmNode::EncodeTelemetry(const telemetry_t& telemetry, MessageBuffer* buffer) {
+  const auto encoded = Encode(telemetry, buffer);
+  return sealer_ ? sealer_->Seal(telemetry_channel_, encoded, buffer) : encoded;
 }
 
 void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
@@ -124,46 +136,94 @@ bool ArmNode::SamplesComplete() const {
   return true;
 }
 
+bool ArmNode::Hears(const Source& source, std::string_view channel) {
+  return source.arm_id == kLeader ? channel == kLeaderChannel
+                                  : ParseArmChannel(kEstimatePrefix, channel) == source.arm_id;
+}
+
+void ArmNode::OnMessage(const LcmMessage& message) {
+  const auto source = std::find_if(sources_.begin(), sources_.end(),
+                                   [&](const Source& s) { return Hears(s, message.channel); });
+  if (source == sources_.end()) return;
+  LcmMessage unsealed = message;
+  if (!Unseal(*source, message.channel, &unsealed.payload)) return;
+  const bool understood =
+      source->arm_id == kLeader ? TakeLeader(*source, unsealed) : TakeEstimate(*source, unsealed);
+  if (!understood) ++rejected_messages_.malformed;
+}
+
+bool ArmNode::Unseal(Source& source, std::string_view channel, std::span<const uint8_t>* message) {
+  if (!source.seal) return true;
+  const SealVerdict verdict = source.seal->Open(channel, message);
+  if (verdict == SealVerdict::kForged) ++rejected_messages_.forged;
+  if (verdict == SealVerdict::kReplayed) ++rejected_messages_.replayed;
+  return verdict == SealVerdict::kGenuine;
+}
+
+// False when it is no message of ours; of those that are, the newest counts.
+bool ArmNode::TakeLeader(Source& source, const LcmMessage& message) {
+  leader_t leader;
+  if (!Decode(message.payload, &leader) || leader.task_dim != PlanarArm::kTaskDim) return false;
+  if (Take(source, leader, message.arrival_ns)) source.neighbour.agreement = Estimator::kMaxAgreement;
+  return true;
+}
+
+bool ArmNode::TakeEstimate(Source& source, const LcmMessage& message) {
+  estimate_t estimate;
+  if (!Decode(message.payload, &estimate) || estimate.task_dim != PlanarArm::kTaskDim ||
+      estimate.arm_id != source.arm_id) {
+    return false;
+  }
+  if (Take(source, estimate, message.arrival_ns)) {
+    source.neighbour.agreement = estimate.agreement;
+    source.leader_age_s = estimate.leader_age_s >= 0.0f ? double{estimate.leader_age_s}
+                                                        : std::numeric_limits<double>::infinity();
+  }
+  return true;
+}
+
 template <class Message>
 bool ArmNode::Take(Source& source, const Message& message, int64_t arrival_ns) {
-  if (message.task_dim != PlanarArm::kTaskDim) return false;
-  if (source.clock.Update({message.sequence, message.stamp_ns, arrival_ns}) == Freshness::kStale)
+  if (source.clock.Update({message.sequence, message.stamp_ns, arrival_ns}) == Freshness::kStale) {
+    ++rejected_messages_.stale;
     return false;
+  }
+  if (AgeOf(source, message.stamp_ns, arrival_ns) > link_.age_max_s) {
+    ++rejected_messages_.late;
+    return false;
+  }
+  const Zeta zeta{ToTask(message.x_m), ToTask(message.v_m_s), ToTask(message.a_m_s2)};
+  if (!IsPlausible(source, zeta, message.stamp_ns)) {
+    ++rejected_messages_.implausible;
+    return false;
+  }
   source.stamp_ns = message.stamp_ns;
-  source.neighbour.zeta = {ToTask(message.x_m), ToTask(message.v_m_s), ToTask(message.a_m_s2)};
+  source.neighbour.zeta = zeta;
   source.neighbour.jerk_m_s3 = ToTask(message.jerk_m_s3);
   source.neighbour.heard = true;
   return true;
 }
 
-void ArmNode::OnMessage(const LcmMessage& message) {
-  for (Source& source : sources_) {
-    bool taken = false;
-    if (source.arm_id == kLeader) {
-      if (message.channel != kLeaderChannel) continue;
-      leader_t leader;
-      taken = Decode(message.payload, &leader) && Take(source, leader, message.arrival_ns);
-      if (taken) {
-        source.neighbour.agreement = Estimator::kMaxAgreement;
-      }
-    } else {
-      if (ParseArmChannel(kEstimatePrefix, message.channel) != source.arm_id) continue;
-      estimate_t estimate;
-      taken = Decode(message.payload, &estimate) && estimate.arm_id == source.arm_id &&
-              Take(source, estimate, message.arrival_ns);
-      if (taken) {
-        source.neighbour.agreement = estimate.agreement;
-        source.leader_age_s = estimate.leader_age_s >= 0.0f ? double{estimate.leader_age_s}
-                                                            : std::numeric_limits<double>::infinity();
-      }
-    }
-    if (!taken) ++rejected_messages_;
-    return;
-  }
+// Whether a state can follow the sender's last one. A leader within (A2), and (1.9) while it is in contact,
+// leave a prediction by no more than beta over the time; after a time without news (1.9) makes up for that
+// time, too. Once the last state is too old to judge by, or of a former life, any is taken.
+bool ArmNode::IsPlausible(const Source& source, const Zeta& zeta, int64_t stamp_ns) const {
+  if (estimator_.kind != EstimatorKind::kPredictive || !source.neighbour.heard) return true;
+  const double since_s = Seconds(stamp_ns - source.stamp_ns);
+  if (since_s <= 0.0 || since_s > link_.age_max_s) return true;
+  const Zeta expected = Taylor(source.neighbour.zeta, since_s);
+  const double allowed_s =
+      link_.plausible_step * (since_s + std::min(source.leader_age_s, estimator_.age_max_s));
+  const auto near = [&](const TaskVector& given, const TaskVector& predicted, double beta) {
+    return (given - predicted).lpNorm<Eigen::Infinity>() <= beta * allowed_s;
+  };
+  return near(zeta.x_m, expected.x_m, estimator_.beta_1_m_s) &&
+         near(zeta.v_m_s, expected.v_m_s, estimator_.beta_2_m_s2) &&
+         near(zeta.a_m_s2, expected.a_m_s2, estimator_.beta_3_m_s3);
 }
 
-double ArmNode::AgeOf(const Source& source, int64_t now_ns) const {
-  return shared_clock_ ? Seconds(now_ns - source.stamp_ns) : source.clock.AgeS(source.stamp_ns, now_ns);
+double ArmNode::AgeOf(const Source& source, int64_t stamp_ns, int64_t now_ns) const {
+  return link_.shared_clock ? Seconds(now_ns - stamp_ns) : source.clock.AgeS(stamp_ns, now_ns);
 }
 
 void ArmNode::ReadNeighbours(int64_t tick_ns) {
@@ -172,7 +232,7 @@ void ArmNode::ReadNeighbours(int64_t tick_ns) {
     Source& source = sources_[i];
     source.neighbour.weight = source.weight[topology];
     if (source.neighbour.heard) {
-      source.neighbour.age_s = AgeOf(source, tick_ns);
+      source.neighbour.age_s = AgeOf(source, source.stamp_ns, tick_ns);
       source.neighbour.leader_age_s = source.leader_age_s + source.neighbour.age_s;
     }
     input_.neighbours.list[i] = source.neighbour;
@@ -272,7 +332,7 @@ void ArmNode::FillTelemetry(telemetry_t* telemetry) {
   telemetry->subtask_error_rad_s = status.subtask_error_rad_s;
   telemetry->sigma_min = status.sigma_min;
   telemetry->saturated_ticks = controller_.saturated_ticks();
-  telemetry->lcm_rejected = rejected_messages_;
+  telemetry->lcm_rejected = rejected_messages_.total();
 }
 
 }  // namespace armada

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,9 +10,11 @@
 #include "firmware/app/fleet.h"
 #include "firmware/can/joint_drive.h"
 #include "firmware/core/arm_controller.h"
+#include "firmware/link/channels.h"
 #include "firmware/link/clock_offset.h"
-#include "firmware/link/lcm_endpoint.h"
+#include "firmware/link/lcm_message.h"
 #include "firmware/link/messages.h"
+#include "firmware/link/seal.h"
 
 namespace armada {
 
@@ -52,12 +55,26 @@ constexpr const char* NameOf(FaultCause cause) {
   return "torques not sent";
 }
 
+/// Messages of nodes that this one listens to, and that were dropped.
+struct RejectedMessages {
+  int64_t malformed = 0;    ///< no message of this type, or of another task
+  int64_t forged = 0;       ///< without the sender's seal, in a fleet with a key
+  int64_t replayed = 0;     ///< sealed, but not newer than the last one of the sender
+  int64_t stale = 0;        ///< sequence or stamp not newer than the last one of the sender
+  int64_t late = 0;         ///< older than link.age_max_s when it came
+  int64_t implausible = 0;  ///< a state that cannot follow the sender's last one
+
+  int64_t total() const { return malformed + forged + replayed + stale + late + implausible; }
+};
+
 /// One arm's board without its sockets and its clock: CAN frames and LCM messages in, frames and messages
 /// out. The process and the simulation run the same object. It allocates in the constructor only. Times are
 /// nanoseconds of the board's monotonic clock; the fleet's time 0 is `epoch_ns`.
 class ArmNode {
  public:
-  ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns);
+  /// With an identity every message is sealed, and none is believed without its sender's seal.
+  ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& initial, int64_t epoch_ns,
+          const std::optional<LinkIdentity>& identity = std::nullopt);
 
   /// Before the first tick, once a period: brings the drives into torque mode. True once all are.
   bool BringUp(int64_t now_ns, FrameList* out);
@@ -78,6 +95,7 @@ class ArmNode {
 
   /// What the tick did, for people; the process adds its own timing.
   void FillTelemetry(telemetry_t* telemetry);
+  std::span<const uint8_t> EncodeTelemetry(const telemetry_t& telemetry, MessageBuffer* buffer);
 
   /// Something is wrong: drives go to rest in their own way, and the node is in kFault until it is started
   /// anew. Its estimator goes on: neighbours may need it.
@@ -88,9 +106,10 @@ class ArmNode {
   ControllerState state() const { return state_; }
   FaultCause fault() const { return fault_; }
   int id() const { return id_; }
+  std::string_view estimate_channel() const { return estimate_channel_; }
+  std::string_view telemetry_channel() const { return telemetry_channel_; }
   const ArmController& controller() const { return controller_; }
-  /// Messages dropped: malformed, stale, or of another fleet's shape.
-  int64_t rejected_messages() const { return rejected_messages_; }
+  const RejectedMessages& rejected_messages() const { return rejected_messages_; }
   /// Frames of a drive that no drive of its kind would send.
   int64_t malformed_frames() const { return malformed_frames_; }
 
@@ -98,6 +117,7 @@ class ArmNode {
   /// A node this arm listens to, in any of the topologies.
   struct Source {
     int arm_id = 0;  ///< 0: the leader
+    std::optional<SealCheck> seal;
     ClockOffset clock;
     int64_t stamp_ns = 0;
     Neighbour neighbour{};
@@ -105,20 +125,31 @@ class ArmNode {
     std::array<double, TopologySchedule::kMaxCount> weight{};  ///< by topology
   };
 
-  void ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight);
+  void ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight,
+                const std::optional<LinkIdentity>& identity);
+  static bool Hears(const Source& source, std::string_view channel);
+  /// Without its seal, if it is genuine; counts it otherwise.
+  bool Unseal(Source& source, std::string_view channel, std::span<const uint8_t>* message);
   template <class Message>
   bool Take(Source& source, const Message& message, int64_t arrival_ns);
-  double AgeOf(const Source& source, int64_t now_ns) const;
+  bool IsPlausible(const Source& source, const Zeta& zeta, int64_t stamp_ns) const;
+  bool TakeLeader(Source& source, const LcmMessage& message);
+  bool TakeEstimate(Source& source, const LcmMessage& message);
+  double AgeOf(const Source& source, int64_t stamp_ns, int64_t now_ns) const;
   void ReadNeighbours(int64_t tick_ns);
   bool ReadJoints(int64_t tick_ns);
 
   int id_;
-  bool shared_clock_;
+  ArmChannel estimate_channel_;
+  ArmChannel telemetry_channel_;
+  LcmLinkConfig link_;
+  EstimatorConfig estimator_;
   TimingConfig timing_;
   TopologySchedule schedule_;
   int64_t epoch_ns_;
   std::vector<std::unique_ptr<JointDrive>> drives_;
   std::vector<Source> sources_;
+  std::optional<Sealer> sealer_;
   ArmController controller_;
   ControllerState state_ = ControllerState::kInit;
   FaultCause fault_ = FaultCause::kNone;
@@ -129,7 +160,7 @@ class ArmNode {
   int64_t malformed_frames_ = 0;
   int64_t estimate_sequence_ = 0;
   int64_t telemetry_sequence_ = 0;
-  int64_t rejected_messages_ = 0;
+  RejectedMessages rejected_messages_;
 };
 
 }  // namespace armada

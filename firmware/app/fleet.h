@@ -13,17 +13,33 @@ namespace armada {
 
 struct LcmLinkConfig {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string key_file = "none";
   bool shared_clock = false;
+  double age_max_s = 0.05;
+  double plausible_step = 1.5;
   ClockOffset::Config clock;
+
+  bool has_key() const { return key_file != LcmLinkConfig().key_file; }
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"lcm_url", "", 0, 0, "LCM multicast group, port and ttl: 0 on one machine, 1 between boards"},
               lcm_url);
+    parameter({"key_file", "", 0, 0,
+               "file of the fleet's key, relative to this file, or none; with it every message is sealed, "
+               "and none is "
+               "believed without its seal; needed where ttl is above 0"},
+              key_file);
     parameter({"shared_clock", "", 0, 1,
                "all boards read one monotonic clock (one machine, or disciplined): ages need no estimate of "
                "offsets"},
               shared_clock);
+    parameter({"age_max_s", "s", 1e-3, 10, "older messages are dropped when they come"}, age_max_s);
+    parameter(
+        {"plausible_step", "", 1, 1e9,
+         "a state is dropped when it is further from what the sender's last one predicts than this many "
+         "times what (A2) and (1.9) allow; predictive estimator only, the others chatter by more"},
+        plausible_step);
     parameter.Table("clock", clock);
   }
 };

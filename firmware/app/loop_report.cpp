@@ -50,6 +50,7 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
       << ",\n    \"locked\": " << (grant.memory_locked ? "true" : "false") << "\n  },\n";
   const BusCounters& can = bus.counters();
   const LcmCounters& lcm = link.counters();
+  const RejectedMessages& rejected = node.rejected_messages();
   out << "  \"bus\": {\n    \"can_sent\": " << can.sent << ",\n    \"can_received\": " << can.received
       << ",\n    \"can_dropped\": " << can.dropped_queue_full << ",\n    \"can_malformed\": " << can.malformed
       << ",\n    \"can_nonsense\": " << node.malformed_frames()
@@ -58,7 +59,9 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
       << ",\n    \"can_error_passive\": " << can.error_passive << ",\n    \"can_bus_off\": " << can.bus_off
       << ",\n    \"can_restarts\": " << can.restarts << ",\n    \"can_errors\": " << can.errors
       << ",\n    \"lcm_sent\": " << lcm.sent << ",\n    \"lcm_received\": " << lcm.received
-      << ",\n    \"lcm_rejected\": " << node.rejected_messages()
+      << ",\n    \"lcm_rejected\": " << rejected.total() << ",\n    \"lcm_forged\": " << rejected.forged
+      << ",\n    \"lcm_replayed\": " << rejected.replayed << ",\n    \"lcm_late\": " << rejected.late
+      << ",\n    \"lcm_implausible\": " << rejected.implausible
       << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed
       << "\n  }\n}\n";
 }

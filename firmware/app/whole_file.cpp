@@ -31,7 +31,7 @@ bool WriteTemporary(const std::string& path, const std::function<void(std::ostre
   return false;
 }
 
-// On the disk before it takes the place of the old one.
+// On the disk: a file before it takes the place of the old one, a folder before its new entry is relied on.
 void Sync(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return;
@@ -47,8 +47,13 @@ bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)
   Sync(Temporary(path));
   std::error_code code;
   fs::rename(Temporary(path), path, code);
-  if (code) *error = "cannot write " + path + ": " + code.message();
-  return !code;
+  if (code) {
+    *error = "cannot write " + path + ": " + code.message();
+    return false;
+  }
+  const fs::path folder = fs::path(path).parent_path();
+  Sync(folder.empty() ? "." : folder.string());
+  return true;
 }
 
 bool CanWriteWhole(const std::string& path, std::string* error) {

@@ -49,7 +49,7 @@ bool PrepareFolder(const fs::path& directory, std::string* error) {
   }
   std::error_code ignored;
   for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "leader.csv", "lcm.log",
-                           "report", "without_subtask"}) {
+                           "report", "without_subtask", "fleet.key", "state"}) {
     fs::remove_all(directory / name, ignored);
   }
   for (const auto& entry : fs::directory_iterator(directory, ignored)) {
@@ -72,6 +72,7 @@ class Run {
   bool interrupted() const { return interrupted_; }
 
  private:
+  bool MakeKey(std::string* error);
   bool WriteInputs(std::string* error);
   bool MakeNetworks(std::string* error);
   bool MakeBoardNetworks(std::string* error);
@@ -90,14 +91,26 @@ class Run {
   ScenarioConfig scenario_;
   fs::path out_;
   VirtualCan virtual_can_;  // before what uses it: removed last
+  FleetKey key_{};
   int64_t epoch_ns_ = 0;
   std::unique_ptr<LcmEndpoint> link_;
   std::unique_ptr<RunRecorder> recorder_;
   bool interrupted_ = false;
 };
 
+// A run has a key of its own, whatever the fleet's: boards of the real fleet do not believe an emulated one.
+bool Run::MakeKey(std::string* error) {
+  std::string& file = scenario_.fleet.link.key_file;
+  file = fs::absolute(In("fleet.key")).string();
+  if (!MakeFleetKey(file, error)) return false;
+  const auto key = LoadFleetKey(file, error);
+  if (key) key_ = *key;
+  return key.has_value();
+}
+
 bool Run::WriteInputs(std::string* error) {
-  if (!PrepareFolder(out_, error) || !WriteEffective(scenario_, out_.string(), error)) return false;
+  if (!PrepareFolder(out_, error) || !MakeKey(error) || !WriteEffective(scenario_, out_.string(), error))
+    return false;
   std::optional<LeaderPath> leader;
   if (scenario_.leader.kind != LeaderKind::kNone) leader.emplace(scenario_.leader);
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
@@ -166,7 +179,7 @@ bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::s
 
 bool Run::StartAll(ProcessGroup* group, std::string* error) {
   epoch_ns_ = MonotonicNow() + kStartUpNs;
-  recorder_ = std::make_unique<RunRecorder>(scenario_, epoch_ns_);
+  recorder_ = std::make_unique<RunRecorder>(scenario_, epoch_ns_, key_);
   const std::string epoch = std::to_string(epoch_ns_);
   if (!Start(group, "lcm-logger",
              {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url,
@@ -190,15 +203,16 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     const std::string id = std::to_string(arm.id);
     std::vector<std::string> board;
     if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
-    board.insert(board.end(),
-                 {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch, "--seconds",
-                  Seconds(), "--initial", In("initial_" + id + ".toml"), "--learned",
-                  LearnedFile(In("learned"), arm.id), "--json", In("arm_" + id + ".json")});
+    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
+                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"),
+                               "--learned", LearnedFile(In("learned"), arm.id), "--state", In("state"),
+                               "--json", In("arm_" + id + ".json")});
     if (!Start(group, "arm " + id, std::move(board), error)) return false;
   }
   return scenario_.leader.kind == LeaderKind::kNone ||
          Start(group, "leader",
-               {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds()},
+               {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds(),
+                "--state", In("state")},
                error);
 }
 

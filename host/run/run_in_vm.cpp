@@ -16,7 +16,10 @@ int RunInVm(const RunOptions& options, const ScenarioConfig& scenario) {
   namespace fs = std::filesystem;
   const fs::path out = options.out;
   std::string error;
-  if (!WriteEffective(scenario, out.string(), &error)) {
+  ScenarioConfig guest = scenario;  // alone on its network; its run has a key of its own
+  guest.fleet.link.lcm_url = LcmLinkConfig().lcm_url;
+  guest.fleet.link.key_file = LcmLinkConfig().key_file;
+  if (!WriteEffective(guest, out.string(), &error)) {
     std::cerr << "armada run: " << error << '\n';
     return kExitFailed;
   }

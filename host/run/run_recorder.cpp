@@ -33,11 +33,12 @@ Zeta ZetaOf(const estimate_t& estimate) {
 
 }  // namespace
 
-RunRecorder::RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns)
-    : scenario_(scenario), epoch_ns_(epoch_ns), arms_(scenario.fleet.arms.size()) {
+RunRecorder::RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns, const FleetKey& key)
+    : scenario_(scenario), epoch_ns_(epoch_ns) {
   if (scenario.leader.kind != LeaderKind::kNone) leader_.emplace(scenario.leader);
   const auto ticks = static_cast<size_t>(scenario.seconds / scenario.fleet.timing.period_s) + 100;
-  for (ArmRecord& arm : arms_) {
+  for (const ArmEntry& entry : scenario.fleet.arms) {
+    ArmRecord& arm = arms_.emplace_back(key, entry.id);
     arm.telemetry.reserve(ticks);
     arm.estimates.reserve(ticks);
   }
@@ -47,15 +48,20 @@ void RunRecorder::OnMessage(const LcmMessage& message) {
   const auto index_of = [&](std::optional<int> arm_id) {
     return arm_id ? scenario_.fleet.IndexOf(*arm_id) : -1;
   };
+  std::span<const uint8_t> payload = message.payload;
+  const auto opens = [&](SealCheck& seal) {
+    return seal.Open(message.channel, &payload) == SealVerdict::kGenuine;
+  };
   if (const int i = index_of(ParseArmChannel(kTelemetryPrefix, message.channel)); i >= 0) {
-    telemetry_t telemetry;
-    if (!Decode(message.payload, &telemetry)) return;
     ArmRecord& arm = arms_[static_cast<size_t>(i)];
+    telemetry_t telemetry;
+    if (!opens(arm.telemetry_seal) || !Decode(payload, &telemetry)) return;
     arm.telemetry.push_back(telemetry);
     arm.latest = telemetry;
   } else if (const int j = index_of(ParseArmChannel(kEstimatePrefix, message.channel)); j >= 0) {
+    ArmRecord& arm = arms_[static_cast<size_t>(j)];
     estimate_t estimate;
-    if (Decode(message.payload, &estimate)) arms_[static_cast<size_t>(j)].estimates.push_back(estimate);
+    if (opens(arm.estimate_seal) && Decode(payload, &estimate)) arm.estimates.push_back(estimate);
   }
 }
 

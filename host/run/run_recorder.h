@@ -7,6 +7,7 @@
 
 #include "firmware/link/lcm_endpoint.h"
 #include "firmware/link/messages.h"
+#include "firmware/link/seal.h"
 #include "hil/leader_path.h"
 #include "hil/scenario.h"
 #include "hil/tracking_record.h"
@@ -18,7 +19,7 @@ namespace armada {
 /// saw and did.
 class RunRecorder {
  public:
-  RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns);
+  RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns, const FleetKey& key);
 
   void OnMessage(const LcmMessage& message);
 
@@ -38,6 +39,9 @@ class RunRecorder {
 
  private:
   struct ArmRecord {
+    ArmRecord(const FleetKey& key, int arm_id) : estimate_seal(key, arm_id), telemetry_seal(key, arm_id) {}
+    SealCheck estimate_seal;
+    SealCheck telemetry_seal;
     std::vector<telemetry_t> telemetry;
     std::vector<estimate_t> estimates;
     std::optional<telemetry_t> latest;

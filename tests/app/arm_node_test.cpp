@@ -157,15 +157,79 @@ TEST_F(Board, WithoutDrivesInTorqueModeSendsNoTorque) {
   EXPECT_EQ(fresh.state(), ControllerState::kFault);
 }
 
+TEST_F(Board, DropsWhatIsOlderThanAllowed) {
+  Tick(0);
+  leader_t message{};
+  message.task_dim = 2;
+  message.sequence = 2;
+  message.stamp_ns = NanosecondsOf(1);
+  node_.OnMessage({kLeaderChannel, Encode(message, &buffer_), NanosecondsOf(7)});
+  EXPECT_EQ(node_.rejected_messages().late, 1);
+  message.sequence = 3;
+  message.stamp_ns = NanosecondsOf(3);
+  node_.OnMessage({kLeaderChannel, Encode(message, &buffer_), NanosecondsOf(7)});
+  EXPECT_EQ(node_.rejected_messages().late, 1) << "40 ms is not too old";
+}
+
+TEST_F(Board, DropsAStateThatCannotFollowTheLastOne) {
+  for (int64_t k = 0; k < 3; ++k) Tick(k);
+  const auto send = [&](int64_t k, double offset_m) {
+    const Zeta zeta = leader_.At(TimeOf(k));
+    leader_t message{};
+    message.stamp_ns = NanosecondsOf(k);
+    message.sequence = k + 1;
+    message.task_dim = 2;
+    for (int c = 0; c < 2; ++c) {
+      message.x_m[c] = zeta.x_m[c] + offset_m;
+      message.v_m_s[c] = zeta.v_m_s[c];
+      message.a_m_s2[c] = zeta.a_m_s2[c];
+    }
+    node_.OnMessage({kLeaderChannel, Encode(message, &buffer_), NanosecondsOf(k)});
+  };
+  const double allowed_m = 1.5 * scenario_.fleet.estimator.beta_1_m_s * 0.01;
+  send(3, 1.1 * allowed_m);
+  EXPECT_EQ(node_.rejected_messages().implausible, 1);
+  send(4, 0.0);
+  send(5, 0.9 * allowed_m);
+  EXPECT_EQ(node_.rejected_messages().total(), 1);
+  for (int64_t k = 6; k < 10; ++k) send(k, 1.0);
+  EXPECT_EQ(node_.rejected_messages().implausible, 5);
+  send(11, 1.0);
+  EXPECT_EQ(node_.rejected_messages().total(), 5) << "after link.age_max_s it counts as started anew";
+}
+
+TEST_F(Board, OfAFleetWithAKeyBelievesSealedMessagesOnlyAndSealsItsOwn) {
+  const LinkIdentity identity{{1, 2, 3}, 1};
+  ArmNode node(scenario_.fleet, 0, start_.controller, kEpochNs, identity);
+  Sealer leader(identity, kLeaderSender);
+  leader_t message{};
+  message.task_dim = 2;
+  message.sequence = 1;
+  message.stamp_ns = kEpochNs;
+  const LcmMessage open{kLeaderChannel, Encode(message, &buffer_), kEpochNs};
+  node.OnMessage(open);
+  EXPECT_EQ(node.rejected_messages().forged, 1);
+  const LcmMessage sealed{kLeaderChannel, leader.Seal(kLeaderChannel, open.payload, &buffer_), kEpochNs};
+  node.OnMessage(sealed);
+  EXPECT_EQ(node.rejected_messages().total(), 1);
+  node.OnMessage(sealed);
+  EXPECT_EQ(node.rejected_messages().replayed, 1);
+
+  std::span<const uint8_t> estimate = node.EncodeEstimate(kEpochNs, &buffer_);
+  EXPECT_EQ(SealCheck(identity.key, 1).Open("EST_1", &estimate), SealVerdict::kGenuine);
+  std::span<const uint8_t> telemetry = node.EncodeTelemetry({}, &buffer_);
+  EXPECT_EQ(SealCheck(identity.key, 1).Open("TEL_1", &telemetry), SealVerdict::kGenuine);
+}
+
 TEST_F(Board, DropsAndCountsWhatIsNoMessage) {
   Tick(0);
   const std::array<uint8_t, 5> junk{1, 2, 3, 4, 5};
   node_.OnMessage({kLeaderChannel, junk, kEpochNs});
-  EXPECT_EQ(node_.rejected_messages(), 1);
+  EXPECT_EQ(node_.rejected_messages().malformed, 1);
   SendLeader(0);  // the same message again
-  EXPECT_EQ(node_.rejected_messages(), 2);
+  EXPECT_EQ(node_.rejected_messages().stale, 1);
   node_.OnMessage({"EST_5", junk, kEpochNs});  // arm 1 does not listen to arm 5
-  EXPECT_EQ(node_.rejected_messages(), 2);
+  EXPECT_EQ(node_.rejected_messages().total(), 2);
 }
 
 TEST_F(Board, PublishesTheEstimateThatIsValidAtTheTick) {

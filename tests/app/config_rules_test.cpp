@@ -149,6 +149,11 @@ INSTANTIATE_TEST_SUITE_P(
                    {"given 0.005 s", "above timing.period_s"}},
         ConfigCase{
             "LcmUrl", 8, "lcm_url = \"udp://239.255.76.67:7667\"", "link.lcm_url", {"udp://", "udpm://"}},
+        ConfigCase{"OtherMachinesWithoutAKey",
+                   8,
+                   "lcm_url = \"udpm://239.255.76.67:7667?ttl=1\"",
+                   "link.lcm_url",
+                   {"given ttl=1", "link.key_file", "armada key new"}},
         ConfigCase{"IdOutOfRange", 12, "id = 65", "arm.65.id", {"given 65", "1 to 64"}},
         ConfigCase{"IdTwice", 20, "id = 1", "arm.1.id", {"given 1", "line 11"}},
         ConfigCase{"BusName", 13, "bus = \"can0\"", "arm.1.bus", {"can0", "socketcan:<interface>"}},

@@ -42,6 +42,17 @@ expect 2 'SHAPE' "$armada" fleet star "$fleet"
 expect 2 'arms' "$armada" fleet line "$fleet" --arms 65
 expect 2 'pins 8: there are 7 arms' "$armada" fleet line "$fleet" --pins 8
 expect 78 'nonexistent.toml' "$armada" fleet line /nonexistent.toml
+
+# Keys: for the owner alone, never over another; what others may read is refused before anything is started.
+expect 0 'key_file = ' "$armada" key new "$work/fleet.key"
+[ "$(stat -c '%a %s' "$work/fleet.key")" = '600 32' ] || fail "a key is 32 bytes, mode 0600"
+expect 1 'exists' "$armada" key new "$work/fleet.key"
+sed "s/^lcm_url.*/key_file = 'fleet.key'/" "$fleet" >"$work/keyed.toml"
+expect 0 '^ok' "$armada" check "$work/keyed.toml"
+chmod 640 "$work/fleet.key"
+expect 78 'fleet.key: has mode 0640, allowed are 0600' "$bin/armada-arm" "$work/keyed.toml" --arm 1 --state "$work/state"
+[ ! -e "$work/state" ] || fail "a refused key leaves nothing behind"
+
 own_network=(unshare --net)
 [ "$(id -u)" = 0 ] || own_network+=(--user --map-root-user)
 expect 1 'multicast' "${own_network[@]}" "$bin/armada-arm" "$fleet" --arm 1

@@ -1,12 +1,15 @@
-"""Judges the golden bytes of the LCM messages by lcm-gen's Python codecs, which share no code with the C++ ones.
+"""Judges the golden bytes of the LCM messages by lcm-gen's Python codecs, and of a sealed one by Python's BLAKE2b:
+neither shares code with ours.
 
 usage: golden_bytes.py LCM_GEN LCMTYPES_DIR GOLDEN_BYTES_H
 
 Exits 1 and prints the expected line for each message whose bytes in GOLDEN_BYTES_H differ.
 """
 
+import hashlib
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -42,6 +45,15 @@ def telemetry(armada):
     return m
 
 
+def sealed(sender, channel, payload):
+    """With the fleet key 0, 1, .. 31, in epoch 3, as the sender's first message."""
+    key = hashlib.blake2b(b"", digest_size=32, key=bytes(range(32)), salt=struct.pack("<QQ", sender, 0),
+                          person=b"armadaLK").digest()
+    times = struct.pack(">QQ", 3, 1)
+    tag = hashlib.blake2b(times + bytes([len(channel)]) + channel + payload, digest_size=16, key=key).digest()
+    return payload + times + tag
+
+
 def main():
     lcm_gen, types, header = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     with tempfile.TemporaryDirectory() as folder:
@@ -52,8 +64,10 @@ def main():
         golden = dict(re.findall(r"(k\w+Hex)\[\] =((?:\s*\"[0-9a-f]*\")+);", header.read_text()))
         golden = {name: re.sub(r"[^0-9a-f]", "", text) for name, text in golden.items()}
         wrong = 0
-        for name, make in (("kLeaderHex", leader), ("kEstimateHex", estimate), ("kTelemetryHex", telemetry)):
-            expected = make(armada).encode().hex()
+        for name, expected in (("kLeaderHex", leader(armada).encode()), ("kEstimateHex", estimate(armada).encode()),
+                               ("kTelemetryHex", telemetry(armada).encode()),
+                               ("kSealedEstimateHex", sealed(7, b"EST_7", estimate(armada).encode()))):
+            expected = expected.hex()
             if golden.get(name) != expected:
                 wrong += 1
                 print(f"{name} should be {expected}")

@@ -1,6 +1,7 @@
 #include "firmware/app/config/fleet_layout.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 namespace armada {
@@ -81,6 +82,10 @@ FleetConfig FleetOf(const FleetLayout& layout, const std::string& file) {
   fleet.timing = layout.timing;
   fleet.estimator = layout.estimator;
   fleet.link = layout.link;
+  if (fleet.link.has_key()) {
+    const auto folder = std::filesystem::absolute(file).parent_path();
+    fleet.link.key_file = (folder / fleet.link.key_file).lexically_normal().string();
+  }
   std::transform(layout.arm.begin(), layout.arm.end(), std::back_inserter(fleet.arms), EntryOf);
   for (const GraphLayout& graph : layout.graph) {
     fleet.topologies.push_back(

@@ -25,8 +25,18 @@ void CheckTiming(const TimingConfig& timing, const ConfigCursor& at, Errors* err
 }
 
 void CheckLcmUrl(const LcmLinkConfig& link, const ConfigCursor& at, Errors* errors) {
+  if (!IsClean(at, *errors)) return;
   std::string error;
-  if (IsClean(at, *errors) && !ParseLcmUrl(link.lcm_url, &error)) Report(at, error, errors);
+  const auto url = ParseLcmUrl(link.lcm_url, &error);
+  if (!url) {
+    Report(at, error, errors);
+  } else if (url->ttl > 0 && !link.has_key()) {
+    Report(at,
+           "given ttl=" + std::to_string(url->ttl) +
+               " without link.key_file: anyone on the network could move the arms. `armada key new FILE` "
+               "makes a key",
+           errors);
+  }
 }
 
 // 0 where no earlier arm is equal in the sense given; else the earlier one's number from 1.
