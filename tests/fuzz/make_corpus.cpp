@@ -12,6 +12,7 @@
 #include "firmware/link/lcm_packet.h"
 #include "firmware/link/messages.h"
 #include "tests/fuzz/drive_world.h"
+#include "tests/fuzz/link_actions.h"
 
 namespace armada {
 namespace {
@@ -150,6 +151,39 @@ void AddLcmSeeds(const std::filesystem::path& root) {
   add("TEL_1", telemetry);
 }
 
+uint8_t Code(LinkAction action) {
+  return static_cast<uint8_t>(action);
+}
+
+/// A leader and an arm that speak for ten ticks; and between them each thing that is refused.
+void AddLinkSeeds(const std::filesystem::path& root) {
+  Corpus corpus(root, "link");
+  using enum LinkAction;
+  for (const Bytes& refused : {Bytes{},
+                               {Code(kRepeat), 1},
+                               {Code(kDamage), 1, 9, 0},
+                               {Code(kNoSeal), 1},
+                               {Code(kForeign)},
+                               {Code(kJunk), 0, 4, 1, 2, 3, 4},
+                               {Code(kRestart)}}) {
+    Bytes seed;
+    for (int tick = 0; tick < 10; ++tick) {
+      seed.insert(seed.end(), {Code(kLeader), 20, 0, Code(kArm), 0, 0, static_cast<uint8_t>(tick)});
+      seed.insert(seed.end(), refused.begin(), refused.end());
+      seed.push_back(Code(kTick));
+    }
+    corpus.Add(seed);
+  }
+}
+
+void AddFleets(const std::filesystem::path& root) {
+  const std::filesystem::path folder = root / "config";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"two_arms.toml", "paper.toml", "obstacles.toml"}) {
+    std::filesystem::copy_file(std::filesystem::path(ARMADA_FLEETS) / name, folder / name);
+  }
+}
+
 }  // namespace
 }  // namespace armada
 
@@ -168,5 +202,7 @@ int main(int argc, char** argv) {
     AddDatagrams(profile, &datagrams);
   }
   AddLcmSeeds(root);
+  AddLinkSeeds(root);
+  AddFleets(root);
   return 0;
 }
