@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/can/feedback_step.h"
 #include "firmware/can/make_drive.h"
 
 namespace armada {
@@ -53,6 +54,12 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
   input_.dq_rad_s = JointVector::Zero(dof);
   input_.neighbours.count = static_cast<int>(sources_.size());
   if (identity) sealer_.emplace(*identity, id_);
+  const SensorConfig sensor = fleet.ControllerConfig(index).control.sensor;
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    frozen_.emplace_back(
+        sensor.frozen_deviations * sensor.velocity_deviation_rad_s[static_cast<Eigen::Index>(i)],
+        sensor.frozen_travel_rad + FeedbackStepOf(fleet.arms[index].joints[i]).position_rad);
+  }
 }
 
 void ArmNode::ListenTo(const FleetConfig& fleet, int arm_id, size_t topology, double weight,
@@ -239,9 +246,9 @@ void ArmNode::ReadNeighbours(int64_t tick_ns) {
   }
 }
 
-// Joint state at one instant from samples of slightly different ones, missing ones predicted. False when a
-// sample is so old that no torque may rest on it.
-bool ArmNode::ReadJoints(int64_t tick_ns) {
+// Joint state at one instant from samples of slightly different ones, missing ones predicted; or why no
+// torque may rest on them.
+FaultCause ArmNode::ReadJoints(int64_t tick_ns) {
   // A drive samples between the request and the answer's arrival.
   int64_t sum_ns = 0;
   int fresh = 0;
@@ -260,11 +267,14 @@ bool ArmNode::ReadJoints(int64_t tick_ns) {
     const auto joint = static_cast<Eigen::Index>(i);
     const bool is_fresh = sample.sequence != sequence_at_request_[i];
     const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
-    if (sample.sequence == 0 || age_s > timing_.feedback_stale_s) return false;
+    if (sample.sequence == 0 || age_s > timing_.feedback_stale_s)
+      return nonsense_since_complete_ ? FaultCause::kFeedbackNonsense : FaultCause::kFeedbackStale;
+    if (is_fresh && frozen_[i].Update(sample.position_rad, sample.velocity_rad_s, timing_.period_s))
+      return FaultCause::kFeedbackFrozen;
     input_.q_rad[joint] = sample.position_rad + age_s * sample.velocity_rad_s;
     input_.dq_rad_s[joint] = sample.velocity_rad_s;
   }
-  return true;
+  return FaultCause::kNone;
 }
 
 void ArmNode::Step(int64_t tick_ns, FrameList* out) {
@@ -276,8 +286,8 @@ void ArmNode::Step(int64_t tick_ns, FrameList* out) {
   if (state_ != ControllerState::kFault) {
     if (!drives_follow) {
       Fail(FaultCause::kDriveLeftTorque, out);
-    } else if (!ReadJoints(tick_ns)) {
-      Fail(nonsense_since_complete_ ? FaultCause::kFeedbackNonsense : FaultCause::kFeedbackStale, out);
+    } else if (const FaultCause cause = ReadJoints(tick_ns); cause != FaultCause::kNone) {
+      Fail(cause, out);
     }
   }
   if (state_ == ControllerState::kFault) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/app/fleet.h"
+#include "firmware/app/frozen_feedback.h"
 #include "firmware/can/joint_drive.h"
 #include "firmware/core/arm_controller.h"
 #include "firmware/link/channels.h"
@@ -24,6 +25,7 @@ enum class FaultCause {
   kDriveLeftTorque,
   kFeedbackStale,
   kFeedbackNonsense,
+  kFeedbackFrozen,
   kNonFiniteTorque,
   kBusDown,
   kBusOff,
@@ -41,6 +43,8 @@ constexpr const char* NameOf(FaultCause cause) {
       return "feedback stale";
     case FaultCause::kFeedbackNonsense:
       return "feedback makes no sense";
+    case FaultCause::kFeedbackFrozen:
+      return "feedback frozen";
     case FaultCause::kNonFiniteTorque:
       return "torque not finite";
     case FaultCause::kBusDown:
@@ -137,7 +141,7 @@ class ArmNode {
   bool TakeEstimate(Source& source, const LcmMessage& message);
   double AgeOf(const Source& source, int64_t stamp_ns, int64_t now_ns) const;
   void ReadNeighbours(int64_t tick_ns);
-  bool ReadJoints(int64_t tick_ns);
+  FaultCause ReadJoints(int64_t tick_ns);
 
   int id_;
   ArmChannel estimate_channel_;
@@ -156,6 +160,7 @@ class ArmNode {
   ArmInput input_;
   int64_t request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
+  std::vector<FrozenFeedback> frozen_;
   bool nonsense_since_complete_ = false;
   int64_t malformed_frames_ = 0;
   int64_t estimate_sequence_ = 0;

@@ -10,6 +10,8 @@ struct SensorConfig {
   JointVector position_deviation_rad = JointVector::Constant(1, 1e-5);
   JointVector velocity_deviation_rad_s = JointVector::Constant(1, 1e-3);
   double start_speed_rad_s = 10.0;
+  double frozen_deviations = 4.0;
+  double frozen_travel_rad = 0.01;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -24,6 +26,13 @@ struct SensorConfig {
     parameter({"start_speed_rad_s", "rad/s", 1e-3, 1e3,
                "standard deviation of dq at the start where its sample is worth less"},
               start_speed_rad_s);
+    parameter({"frozen_deviations", "", 1, 100,
+               "speed, in its standard deviations, above which a joint counts as moving"},
+              frozen_deviations);
+    parameter({"frozen_travel_rad", "rad", 1e-6, 10,
+               "travel by a moving joint's speed, beside the resolution of its position, over which that "
+               "position may repeat to the bit; further, and the feedback is frozen: FAULT"},
+              frozen_travel_rad);
   }
 
   /// Single values spread over `dof` joints.

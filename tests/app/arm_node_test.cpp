@@ -14,6 +14,7 @@ namespace {
 
 constexpr int64_t kEpochNs = 1'000'000'000;
 constexpr int64_t kPeriodNs = 10'000'000;
+constexpr uint32_t kEncoderEstimatesOfNode1 = 0x029;
 
 ScenarioConfig PaperScenario() {
   std::vector<ConfigError> errors;
@@ -49,7 +50,13 @@ class Board : public testing::Test {
   void HandOver(int64_t k) {
     for (CanFrame frame : to_board_) {
       frame.stamp_ns = NanosecondsOf(k);
-      if (deaf_to_ == 0 || (frame.id >> 5) != deaf_to_) node_.OnFrame(frame);
+      const uint32_t node = frame.id >> 5;
+      if (deaf_to_ != 0 && node == deaf_to_) continue;
+      if (frame.id == kEncoderEstimatesOfNode1) {
+        if (frozen_) frame.data = frozen_data_;
+        frozen_data_ = frame.data;
+      }
+      node_.OnFrame(frame);
     }
     to_board_.Clear();
   }
@@ -88,6 +95,8 @@ class Board : public testing::Test {
   FrameList to_drives_, to_board_;
   MessageBuffer buffer_{};
   bool ready_ = false;
+  bool frozen_ = false;  ///< joint 1's drive repeats its last sample
+  decltype(CanFrame::data) frozen_data_{};
   bool silent_ = false;   ///< the leader is
   uint32_t deaf_to_ = 0;  ///< node whose frames are lost on the way to the board
 };
@@ -119,6 +128,31 @@ TEST_F(Board, StopsForGoodWhenAJointStaysSilent) {
   for (int64_t k = 9; k < 40; ++k) Tick(k);
   EXPECT_EQ(node_.state(), ControllerState::kFault) << "nothing re-arms by itself";
   EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
+TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleForEver) {
+  for (int64_t k = 0; k < 100; ++k) Tick(k);
+  frozen_ = true;
+  int64_t k = 100;
+  while (k < 200 && node_.state() != ControllerState::kFault) Tick(k++);
+  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackFrozen);
+  EXPECT_LE(k, 105);
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
+TEST(FrozenFeedback, AJointAtRestMayRepeatForEver) {
+  FrozenFeedback feedback(0.004, 0.01);
+  for (int k = 0; k < 100'000; ++k) ASSERT_FALSE(feedback.Update(1.0, k % 2 == 0 ? 0.004 : -0.004, 0.01));
+}
+
+TEST(FrozenFeedback, AMovingJointMayNot) {
+  FrozenFeedback feedback(0.004, 0.01);
+  EXPECT_FALSE(feedback.Update(1.0, 0.104, 0.01)) << "the first sample repeats nothing";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0, 0.104, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, 0.01)) << "it has moved";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0 + 1e-9, -0.104, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.103, 0.01));
+  EXPECT_TRUE(feedback.Update(1.0 + 1e-9, 0.104, 0.01));
 }
 
 TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
