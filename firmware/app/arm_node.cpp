@@ -56,9 +56,13 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
   if (identity) sealer_.emplace(*identity, id_);
   const SensorConfig sensor = fleet.ControllerConfig(index).control.sensor;
   for (size_t i = 0; i < drives_.size(); ++i) {
-    frozen_.emplace_back(
-        sensor.frozen_deviations * sensor.velocity_deviation_rad_s[static_cast<Eigen::Index>(i)],
-        sensor.frozen_travel_rad + FeedbackStepOf(fleet.arms[index].joints[i]).position_rad);
+    const auto joint = static_cast<Eigen::Index>(i);
+    const JointDriveConfig& drive = fleet.arms[index].joints[i];
+    frozen_.emplace_back(FrozenFeedback::Limits{
+        .speed_noise_rad_s = sensor.frozen_deviations * sensor.velocity_deviation_rad_s[joint],
+        .travel_max_rad = sensor.frozen_travel_rad + FeedbackStepOf(drive).position_rad,
+        .pushed_max_s = sensor.frozen_pushed_s});
+    torque_limit_Nm_[i] = drive.torque_limit_Nm;
   }
 }
 
@@ -269,8 +273,12 @@ FaultCause ArmNode::ReadJoints(int64_t tick_ns) {
     const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
     if (sample.sequence == 0 || age_s > timing_.feedback_stale_s)
       return nonsense_since_complete_ ? FaultCause::kFeedbackNonsense : FaultCause::kFeedbackStale;
-    if (is_fresh && frozen_[i].Update(sample.position_rad, sample.velocity_rad_s, timing_.period_s))
+    const JointVector& sent_Nm = controller_.status().tau_Nm;
+    const bool at_limit = sent_Nm.size() > 0 && std::abs(sent_Nm[joint]) >= torque_limit_Nm_[i];
+    if (is_fresh &&
+        frozen_[i].Update(sample.position_rad, sample.velocity_rad_s, at_limit, timing_.period_s)) {
       return FaultCause::kFeedbackFrozen;
+    }
     input_.q_rad[joint] = sample.position_rad + age_s * sample.velocity_rad_s;
     input_.dq_rad_s[joint] = sample.velocity_rad_s;
   }

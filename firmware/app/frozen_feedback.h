@@ -1,33 +1,41 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 namespace armada {
 
 /// Notices a joint whose drive goes on answering with what it knew last: its position repeats to the bit
-/// while its speed says that it moves. A joint at rest may repeat for ever.
+/// while its speed says that it moves, or while it is pushed with all the torque there is (which a blocked
+/// joint is, too). A joint at rest may repeat for ever.
 class FrozenFeedback {
  public:
-  /// `speed_noise_rad_s`: no more than this is motion; `travel_max_rad`: travel by speed without one by
-  /// position that no working drive shows, its resolution included.
-  FrozenFeedback(double speed_noise_rad_s, double travel_max_rad)
-      : speed_noise_rad_s_(speed_noise_rad_s), travel_max_rad_(travel_max_rad) {}
+  struct Limits {
+    double speed_noise_rad_s;  ///< no more than this is motion
+    double travel_max_rad;     ///< by speed without any by position; above the position's resolution
+    double pushed_max_s;       ///< at the torque limit without any motion
+  };
 
-  /// Takes the sample that comes `elapsed_s` after the last one. True when it counts as frozen.
-  bool Update(double position_rad, double velocity_rad_s, double elapsed_s) {
+  explicit FrozenFeedback(const Limits& limits) : limits_(limits) {}
+
+  /// Takes the sample that comes `elapsed_s` after the last one, and whether the torque in between was at its
+  /// limit. True when it counts as frozen. Speeds to and fro cancel: a joint may tremble within the
+  /// resolution of its position.
+  bool Update(double position_rad, double velocity_rad_s, bool at_torque_limit, double elapsed_s) {
     const bool repeats = position_rad == position_rad_;
     position_rad_ = position_rad;
-    const double speed_rad_s = std::max(0.0, std::abs(velocity_rad_s) - speed_noise_rad_s_);
-    travel_rad_ = repeats ? travel_rad_ + speed_rad_s * elapsed_s : 0.0;
-    return travel_rad_ > travel_max_rad_;
+    repeated_s_ = repeats ? repeated_s_ + elapsed_s : 0.0;
+    travel_rad_ = repeats ? travel_rad_ + velocity_rad_s * elapsed_s : 0.0;
+    pushed_s_ = repeats && at_torque_limit ? pushed_s_ + elapsed_s : 0.0;
+    return std::abs(travel_rad_) - limits_.speed_noise_rad_s * repeated_s_ > limits_.travel_max_rad ||
+           pushed_s_ > limits_.pushed_max_s;
   }
 
  private:
-  double speed_noise_rad_s_;
-  double travel_max_rad_;
+  Limits limits_;
   double position_rad_ = std::nan("");
-  double travel_rad_ = 0.0;
+  double repeated_s_ = 0.0;  ///< for how long the position has been the same
+  double travel_rad_ = 0.0;  ///< by speed in that time
+  double pushed_s_ = 0.0;    ///< for how long of it, to its end, the torque was at its limit
 };
 
 }  // namespace armada

@@ -12,6 +12,7 @@ struct SensorConfig {
   double start_speed_rad_s = 10.0;
   double frozen_deviations = 4.0;
   double frozen_travel_rad = 0.01;
+  double frozen_pushed_s = 0.1;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -33,6 +34,11 @@ struct SensorConfig {
                "travel by a moving joint's speed, beside the resolution of its position, over which that "
                "position may repeat to the bit; further, and the feedback is frozen: FAULT"},
               frozen_travel_rad);
+    parameter(
+        {"frozen_pushed_s", "s", 1e-3, 100,
+         "time at its torque limit over which a joint's position may repeat to the bit; longer, and it is "
+         "blocked or its feedback is frozen: FAULT"},
+        frozen_pushed_s);
   }
 
   /// Single values spread over `dof` joints.

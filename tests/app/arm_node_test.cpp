@@ -131,28 +131,54 @@ TEST_F(Board, StopsForGoodWhenAJointStaysSilent) {
 }
 
 TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleForEver) {
-  for (int64_t k = 0; k < 100; ++k) Tick(k);
+  int64_t k = 0;
+  while (k < 20 || std::abs(bench_.plant().dq_rad_s[0]) < 0.5) Tick(k++);
+  const int64_t frozen_at = k;
   frozen_ = true;
-  int64_t k = 100;
+  while (k < frozen_at + 50 && node_.state() != ControllerState::kFault) Tick(k++);
+  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackFrozen);
+  EXPECT_LE(k - frozen_at, 5);
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
+TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleFromRest) {
+  int64_t k = 0;
+  while (k < 100) Tick(k++);
+  ASSERT_LT(std::abs(bench_.plant().dq_rad_s[0]), 0.05);
+  frozen_ = true;
   while (k < 200 && node_.state() != ControllerState::kFault) Tick(k++);
   EXPECT_EQ(node_.fault(), FaultCause::kFeedbackFrozen);
-  EXPECT_LE(k, 105);
   EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
 }
 
 TEST(FrozenFeedback, AJointAtRestMayRepeatForEver) {
-  FrozenFeedback feedback(0.004, 0.01);
-  for (int k = 0; k < 100'000; ++k) ASSERT_FALSE(feedback.Update(1.0, k % 2 == 0 ? 0.004 : -0.004, 0.01));
+  FrozenFeedback feedback({0.004, 0.01, 0.1});
+  for (int k = 0; k < 100'000; ++k)
+    ASSERT_FALSE(feedback.Update(1.0, k % 3 == 0 ? 0.004 : -0.004, false, 0.01));
 }
 
-TEST(FrozenFeedback, AMovingJointMayNot) {
-  FrozenFeedback feedback(0.004, 0.01);
-  EXPECT_FALSE(feedback.Update(1.0, 0.104, 0.01)) << "the first sample repeats nothing";
-  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0, 0.104, 0.01)) << k;
-  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, 0.01)) << "it has moved";
-  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0 + 1e-9, -0.104, 0.01)) << k;
-  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.103, 0.01));
-  EXPECT_TRUE(feedback.Update(1.0 + 1e-9, 0.104, 0.01));
+TEST(FrozenFeedback, AJointMayTrembleWithinItsResolution) {
+  FrozenFeedback feedback({0.004, 0.01, 0.1});
+  for (int k = 0; k < 100'000; ++k) ASSERT_FALSE(feedback.Update(1.0, k % 2 == 0 ? 0.4 : -0.4, false, 0.01));
+}
+
+TEST(FrozenFeedback, AMovingJointMayNotRepeat) {
+  FrozenFeedback feedback({0.004, 0.01, 0.1});
+  EXPECT_FALSE(feedback.Update(1.0, -0.104, false, 0.01)) << "the first sample repeats nothing";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0, -0.104, false, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01)) << "it has moved";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.103, false, 0.01));
+  EXPECT_TRUE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01));
+}
+
+TEST(FrozenFeedback, AJointThatIsPushedMayNotRepeatForLong) {
+  FrozenFeedback feedback({0.004, 0.01, 0.095});
+  for (int k = 0; k < 30; ++k) {
+    const bool pushed = k % 10 != 0;
+    ASSERT_FALSE(feedback.Update(1.0, 0.0, pushed, 0.01)) << k;
+  }
+  EXPECT_TRUE(feedback.Update(1.0, 0.0, true, 0.01));
 }
 
 TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
