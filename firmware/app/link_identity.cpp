@@ -33,8 +33,8 @@ std::optional<uint64_t> ReadEpoch(const std::string& path, std::string* error) {
 std::string DefaultStateFolder() {
   if (const char* folder = std::getenv("STATE_DIRECTORY")) return folder;
   if (const char* folder = std::getenv("XDG_STATE_HOME")) return std::string(folder) + "/armada";
-  const char* home = std::getenv("HOME");
-  return std::string(home != nullptr ? home : "/var/lib") + "/.local/state/armada";
+  if (const char* home = std::getenv("HOME")) return std::string(home) + "/.local/state/armada";
+  return "/var/lib/armada";
 }
 
 bool TakeIdentity(const LcmLinkConfig& link, int sender, const std::string& state_folder,

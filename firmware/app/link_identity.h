@@ -9,7 +9,7 @@
 namespace armada {
 
 /// Where this process keeps what must survive its restarts, unless told otherwise: $STATE_DIRECTORY, as
-/// systemd sets it, $XDG_STATE_HOME/armada, or ~/.local/state/armada.
+/// systemd sets it, $XDG_STATE_HOME/armada, ~/.local/state/armada, or /var/lib/armada without a home.
 std::string DefaultStateFolder();
 
 /// Who a sender of the fleet is on the link, in a new epoch: one more than the last one in
