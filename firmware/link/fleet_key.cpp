@@ -85,8 +85,11 @@ bool MakeFleetKey(const std::string& path, std::string* error) {
   randombytes_buf(key.data(), key.size());
   const bool written = write(file.descriptor(), key.data(), key.size()) == static_cast<ssize_t>(key.size()) &&
                        fsync(file.descriptor()) == 0;
+  const int cause = errno;
   sodium_memzero(key.data(), key.size());
-  return written || fail(std::strerror(errno));
+  if (written) return true;
+  unlink(path.c_str());
+  return fail(std::strerror(cause));
 }
 
 }  // namespace armada
