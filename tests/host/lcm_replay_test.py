@@ -61,7 +61,8 @@ def record(programs, source, folder):
         [programs / "armada", "run", source / "hil/scenarios/paper.toml", "--seconds", "1", "--bus", "udp",
          "--set", "window_start_s=0.5", "--out", folder / "run"],
         capture_output=True, text=True, timeout=PATIENCE_S)
-    assert run.returncode in (0, 1), run.stdout + run.stderr  # 1: ran, and tracked badly on a busy machine
+    # Exit code 1: ran, and tracked badly on a busy machine.
+    assert (folder / "run/metrics.json").exists(), run.stdout + run.stderr
     return folder / "run/lcm.log"
 
 

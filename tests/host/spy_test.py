@@ -104,9 +104,22 @@ def field_names(source, message):
     return re.findall(r"^ +\w+ +(\w+)", text, re.MULTILINE)
 
 
-def open_channel(channel, main, y):
+def put_aside(opened):
+    """Moves windows away from the table, or they would be in the way of the next double click. A window that has just
+    opened may still put itself back."""
+    def attempt():
+        for place, number in enumerate(opened.values()):
+            output_of("xdotool", "windowmove", "--sync", number, 800, 380 * place)
+        time.sleep(0.5)
+        return all("Position: 800," in output_of("xdotool", "getwindowgeometry", number).stdout
+                   for number in opened.values())
+    wait_for("windows aside", attempt)
+
+
+def open_channel(channel, main, y, opened):
     """Double-clicks the channel's row until a window of its name opens."""
     def attempt():
+        put_aside(opened)
         output_of("xdotool", "mousemove", "--window", main, 40, round(y),
                   "click", "--repeat", 2, "--delay", 80, 1)
         with contextlib.suppress(AssertionError):
@@ -210,10 +223,9 @@ def main():
         spy = wait_for("lcm-spy's window", lambda: window("LCM Spy"))
         rows = wait_for("15 channels and their types", lambda: rows_of_channels(spy, folder))
         opened = {}
-        for place, channel in enumerate(OPENED):
-            opened[channel] = open_channel(channel, spy, rows[channel])
-            # Away from the table, or it would be in the way of the next double click.
-            output_of("xdotool", "windowmove", opened[channel], 800, 380 * place)
+        for channel in OPENED:
+            opened[channel] = open_channel(channel, spy, rows[channel], opened)
+        put_aside(opened)
         for channel, number in opened.items():
             check_decoded(channel, number, source, folder)
         if len(sys.argv) > 3:
