@@ -117,7 +117,8 @@ double TorqueUnit_Nm(const Cia402Config& config, uint16_t max_torque) {
 uint16_t MaxTorqueOf(const JointDriveConfig& joint) {
   const double motor_Nm = joint.torque_limit_Nm / joint.gear_ratio;
   const double thousandths = std::floor(1000.0 * motor_Nm / joint.cia402.rated_torque_Nm);
-  return static_cast<uint16_t>(std::clamp(thousandths, 0.0, double{UINT16_MAX}));
+  // Also for a file that forgot the limit, which is not a number then: 0, until the file is refused.
+  return static_cast<uint16_t>(std::min(std::fmax(thousandths, 0.0), double{UINT16_MAX}));
 }
 
 std::vector<CanMessage> Messages(const JointDriveConfig& joint) {
