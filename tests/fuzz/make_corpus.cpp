@@ -176,14 +176,6 @@ void AddLinkSeeds(const std::filesystem::path& root) {
   }
 }
 
-void AddFleets(const std::filesystem::path& root) {
-  const std::filesystem::path folder = root / "config";
-  std::filesystem::create_directories(folder);
-  for (const char* name : {"two_arms.toml", "paper.toml", "obstacles.toml"}) {
-    std::filesystem::copy_file(std::filesystem::path(ARMADA_FLEETS) / name, folder / name);
-  }
-}
-
 }  // namespace
 }  // namespace armada
 
@@ -203,6 +195,5 @@ int main(int argc, char** argv) {
   }
   AddLcmSeeds(root);
   AddLinkSeeds(root);
-  AddFleets(root);
   return 0;
 }
