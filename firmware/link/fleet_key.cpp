@@ -40,13 +40,15 @@ std::string Octal(mode_t mode) {
 // What is wrong with a file as a place of a secret; empty if nothing is.
 std::string WhatIsWrong(const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return "is no regular file";
-  if (status.st_uid != geteuid() && status.st_uid != 0)
+  if (status.st_uid != geteuid() && status.st_uid != 0) {
     return "belongs to user " + std::to_string(status.st_uid) + ", allowed are this user, " +
            std::to_string(geteuid()) + ", and root";
-  if ((status.st_mode & kOthers) != 0)
+  }
+  if ((status.st_mode & kOthers) != 0) {
     return "has mode " + Octal(status.st_mode) +
            ", allowed are 0600 and 0400: chmod 600 it, and make a new key "
            "if others could have read this one";
+  }
   if (status.st_size != kFleetKeySize)
     return "has " + std::to_string(status.st_size) + " bytes, a key has " + std::to_string(kFleetKeySize);
   return "";

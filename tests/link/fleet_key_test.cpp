@@ -57,7 +57,7 @@ TEST_F(FleetKeyTest, ANewKeyNeverReplacesAFile) {
 }
 
 TEST_F(FleetKeyTest, AFileThatOthersMayReadOrWriteIsRefused) {
-  for (const mode_t mode : {0640, 0604, 0620, 0602, 0601, 0777}) {
+  for (const mode_t mode : {0640u, 0604u, 0620u, 0602u, 0601u, 0777u}) {
     ASSERT_EQ(chmod(path_.c_str(), mode), 0);
     EXPECT_TRUE(Has(Refusal(path_), "allowed are 0600 and 0400")) << error_;
   }
