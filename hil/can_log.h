@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "firmware/can/frame.h"
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 namespace armada {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware/can/bus.h"
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 #include "hil/hil_clock.h"
 
 namespace armada {

@@ -79,7 +79,8 @@ struct Tally {
   int64_t skipped = 0;  // grid times that passed before the process woke up: never sent late in a burst
 };
 
-Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, Sealer* sealer, LcmEndpoint& lcm) {
+Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, std::optional<Sealer>& sealer,
+              LcmEndpoint& lcm) {
   Tally tally;
   MessageBuffer buffer;
   int64_t k = grid.Next(MonotonicNow());
@@ -90,9 +91,8 @@ Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, Sealer* 
     leader_t message = MessageAt(path, grid.PathTime(k));
     message.stamp_ns = grid.Stamp(k);
     message.sequence = tally.sent + 1;
-    auto encoded = Encode(message, &buffer);
-    if (sealer != nullptr) encoded = sealer->Seal(kLeaderChannel, encoded, &buffer);
-    lcm.Publish(kLeaderChannel, encoded) ? ++tally.sent : ++tally.refused;
+    const auto sealed = SealIfKeyed(sealer, kLeaderChannel, Encode(message, &buffer), &buffer);
+    lcm.Publish(kLeaderChannel, sealed) ? ++tally.sent : ++tally.refused;
 
     const int64_t next = std::max(k + 1, grid.Next(MonotonicNow()));
     tally.skipped += next - (k + 1);
@@ -139,8 +139,8 @@ int Run(const Options& options) {
   const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : first_ns;
   std::cout << "armada-leader: " << kLeaderChannel << " at " << rate_hz << " Hz on " << ToString(*url)
             << ", epoch " << epoch_ns << " ns" << std::endl;
-  const Tally tally = Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds,
-                              sealer ? &*sealer : nullptr, *lcm);
+  const Tally tally =
+      Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm);
   std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
             << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
   return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;

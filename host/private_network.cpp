@@ -15,23 +15,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "firmware/unique_fd.h"
+
 namespace armada {
 namespace {
-
-// Closes its descriptor at the end of the scope.
-class ScopedFd {
- public:
-  explicit ScopedFd(int fd) : fd_(fd) {}
-  ScopedFd(const ScopedFd&) = delete;
-  ScopedFd& operator=(const ScopedFd&) = delete;
-  ~ScopedFd() {
-    if (fd_ >= 0) close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 sockaddr_in Address(const char* dotted) {
   sockaddr_in address{};
@@ -41,7 +28,7 @@ sockaddr_in Address(const char* dotted) {
 }
 
 bool WriteFile(const char* path, const std::string& text) {
-  const ScopedFd file(open(path, O_WRONLY | O_CLOEXEC));
+  const UniqueFd file(open(path, O_WRONLY | O_CLOEXEC));
   return write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
@@ -75,7 +62,7 @@ bool UnshareNetwork(std::string* error) {
 // ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo
 bool RouteMulticastToLoopback(std::string* error) {
   char name[] = "lo";
-  const ScopedFd control(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const UniqueFd control(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq interface {};
   std::memcpy(interface.ifr_name, name, sizeof(name));
   if (ioctl(control.get(), SIOCGIFFLAGS, &interface) != 0) return Fail("cannot read the state of lo", error);
@@ -106,7 +93,7 @@ bool HasMulticastRoute() {
   const int ttl = 0;
 
   // The kernel picks a free port, so that the probe disturbs no one.
-  const ScopedFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const UniqueFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (bind(socket.get(), address, size) != 0 || getsockname(socket.get(), address, &size) != 0 ||
       setsockopt(socket.get(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof(ttl)) != 0 ||
       setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) != 0 ||

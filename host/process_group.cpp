@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 namespace armada {
 namespace {

@@ -180,7 +180,7 @@ void ArmLoop::PublishTelemetry() {
   telemetry_.can_dropped = static_cast<int64_t>(can.dropped_queue_full + can.dropped_late);
   const LcmCounters& lcm = link_->counters();
   telemetry_.lcm_received = static_cast<int64_t>(lcm.received);
-  telemetry_.lcm_rejected = node_->rejected_messages().total() + static_cast<int64_t>(lcm.malformed);
+  telemetry_.lcm_rejected += static_cast<int64_t>(lcm.malformed);
   link_->Publish(node_->telemetry_channel(), node_->EncodeTelemetry(telemetry_, &buffer_));
 }
 

@@ -61,8 +61,8 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
     frozen_.emplace_back(FrozenFeedback::Limits{
         .speed_noise_rad_s = sensor.frozen_deviations * sensor.velocity_deviation_rad_s[joint],
         .travel_max_rad = sensor.frozen_travel_rad + FeedbackStepOf(drive).position_rad,
+        .torque_limit_Nm = drive.torque_limit_Nm,
         .pushed_max_s = sensor.frozen_pushed_s});
-    torque_limit_Nm_[i] = drive.torque_limit_Nm;
   }
 }
 
@@ -110,13 +110,11 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
   Copy(controller_.estimator().jerk_m_s3(), message.jerk_m_s3);
-  const auto encoded = Encode(message, buffer);
-  return sealer_ ? sealer_->Seal(estimate_channel_, encoded, buffer) : encoded;
+  return SealIfKeyed(sealer_, estimate_channel_, Encode(message, buffer), buffer);
 }
 
 std::span<const uint8_t> ArmNode::EncodeTelemetry(const telemetry_t& telemetry, MessageBuffer* buffer) {
-  const auto encoded = Encode(telemetry, buffer);
-  return sealer_ ? sealer_->Seal(telemetry_channel_, encoded, buffer) : encoded;
+  return SealIfKeyed(sealer_, telemetry_channel_, Encode(telemetry, buffer), buffer);
 }
 
 void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
@@ -273,10 +271,10 @@ FaultCause ArmNode::ReadJoints(int64_t tick_ns) {
     const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
     if (sample.sequence == 0 || age_s > timing_.feedback_stale_s)
       return nonsense_since_complete_ ? FaultCause::kFeedbackNonsense : FaultCause::kFeedbackStale;
-    const JointVector& sent_Nm = controller_.status().tau_Nm;
-    const bool at_limit = sent_Nm.size() > 0 && std::abs(sent_Nm[joint]) >= torque_limit_Nm_[i];
+    const JointVector& tau_Nm = controller_.status().tau_Nm;  // empty before the first
+    const double sent_Nm = tau_Nm.size() > 0 ? tau_Nm[joint] : 0.0;
     if (is_fresh &&
-        frozen_[i].Update(sample.position_rad, sample.velocity_rad_s, at_limit, timing_.period_s)) {
+        frozen_[i].Update(sample.position_rad, sample.velocity_rad_s, sent_Nm, timing_.period_s)) {
       return FaultCause::kFeedbackFrozen;
     }
     input_.q_rad[joint] = sample.position_rad + age_s * sample.velocity_rad_s;

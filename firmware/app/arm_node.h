@@ -161,7 +161,6 @@ class ArmNode {
   int64_t request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
   std::vector<FrozenFeedback> frozen_;
-  std::array<double, kMaxDof> torque_limit_Nm_{};
   bool nonsense_since_complete_ = false;
   int64_t malformed_frames_ = 0;
   int64_t estimate_sequence_ = 0;

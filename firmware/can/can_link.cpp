@@ -14,7 +14,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 namespace armada {
 namespace {

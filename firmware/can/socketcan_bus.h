@@ -7,7 +7,7 @@
 #include "firmware/can/bus.h"
 #include "firmware/can/can_bus_config.h"
 #include "firmware/can/transmit_queue.h"
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 struct msghdr;
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "firmware/can/bus.h"
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 namespace armada {
 

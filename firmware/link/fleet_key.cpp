@@ -10,26 +10,12 @@
 #include <cstdio>
 #include <cstring>
 
+#include "firmware/unique_fd.h"
+
 namespace armada {
 namespace {
 
 constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
-
-/// Closes a file at the end of a scope.
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  int descriptor() const { return descriptor_; }
-  bool is_open() const { return descriptor_ >= 0; }
-
- private:
-  int descriptor_;
-};
 
 std::string Octal(mode_t mode) {
   char text[8];
@@ -62,13 +48,13 @@ std::optional<FleetKey> LoadFleetKey(const std::string& path, std::string* error
     return std::nullopt;
   };
   if (sodium_init() < 0) return fail("libsodium does not start");
-  const File file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   struct stat status {};
-  if (!file.is_open() || fstat(file.descriptor(), &status) != 0)
+  if (!file.valid() || fstat(file.get(), &status) != 0)
     return fail(std::string(std::strerror(errno)) + "; `armada key new` makes one");
   if (const std::string wrong = WhatIsWrong(status); !wrong.empty()) return fail(wrong);
   FleetKey key{};
-  if (read(file.descriptor(), key.data(), key.size()) != static_cast<ssize_t>(key.size()))
+  if (read(file.get(), key.data(), key.size()) != static_cast<ssize_t>(key.size()))
     return fail("cannot be read");
   if (std::all_of(key.begin(), key.end(), [](uint8_t byte) { return byte == 0; }))
     return fail("is all zeros, which is no secret; `armada key new` makes one");
@@ -81,12 +67,12 @@ bool MakeFleetKey(const std::string& path, std::string* error) {
     return false;
   };
   if (sodium_init() < 0) return fail("libsodium does not start");
-  const File file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
-  if (!file.is_open()) return fail(std::strerror(errno));
+  const UniqueFd file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  if (!file.valid()) return fail(std::strerror(errno));
   FleetKey key{};
   randombytes_buf(key.data(), key.size());
-  const bool written = write(file.descriptor(), key.data(), key.size()) == static_cast<ssize_t>(key.size()) &&
-                       fsync(file.descriptor()) == 0;
+  const bool written =
+      write(file.get(), key.data(), key.size()) == static_cast<ssize_t>(key.size()) && fsync(file.get()) == 0;
   const int cause = errno;
   sodium_memzero(key.data(), key.size());
   if (written) return true;

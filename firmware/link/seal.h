@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -46,6 +47,12 @@ class Sealer {
   uint64_t epoch_;
   uint64_t count_ = 0;
 };
+
+/// With a sealer, the message sealed; without one, in a fleet that has no key, as it is.
+inline std::span<const uint8_t> SealIfKeyed(std::optional<Sealer>& sealer, std::string_view channel,
+                                            std::span<const uint8_t> message, MessageBuffer* buffer) {
+  return sealer ? sealer->Seal(channel, message, buffer) : message;
+}
 
 enum class SealVerdict {
   kGenuine,   ///< of this sender, and newer than every message before

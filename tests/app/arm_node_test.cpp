@@ -157,33 +157,33 @@ TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleFromRest) {
 }
 
 TEST(FrozenFeedback, AJointAtRestMayRepeatForEver) {
-  FrozenFeedback feedback({0.004, 0.01, 0.1});
+  FrozenFeedback feedback({0.004, 0.01, 150.0, 0.1});
   for (int k = 0; k < 100'000; ++k)
-    ASSERT_FALSE(feedback.Update(1.0, k % 3 == 0 ? 0.004 : -0.004, false, 0.01));
+    ASSERT_FALSE(feedback.Update(1.0, k % 3 == 0 ? 0.004 : -0.004, 149.0, 0.01));
 }
 
 TEST(FrozenFeedback, AJointMayTrembleWithinItsResolution) {
-  FrozenFeedback feedback({0.004, 0.01, 0.1});
-  for (int k = 0; k < 100'000; ++k) ASSERT_FALSE(feedback.Update(1.0, k % 2 == 0 ? 0.4 : -0.4, false, 0.01));
+  FrozenFeedback feedback({0.004, 0.01, 150.0, 0.1});
+  for (int k = 0; k < 100'000; ++k) ASSERT_FALSE(feedback.Update(1.0, k % 2 == 0 ? 0.4 : -0.4, 149.0, 0.01));
 }
 
 TEST(FrozenFeedback, AMovingJointMayNotRepeat) {
-  FrozenFeedback feedback({0.004, 0.01, 0.1});
-  EXPECT_FALSE(feedback.Update(1.0, -0.104, false, 0.01)) << "the first sample repeats nothing";
-  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0, -0.104, false, 0.01)) << k;
-  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01)) << "it has moved";
-  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01)) << k;
-  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.103, false, 0.01));
-  EXPECT_TRUE(feedback.Update(1.0 + 1e-9, 0.104, false, 0.01));
+  FrozenFeedback feedback({0.004, 0.01, 150.0, 0.1});
+  EXPECT_FALSE(feedback.Update(1.0, -0.104, 149.0, 0.01)) << "the first sample repeats nothing";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0, -0.104, 149.0, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, 149.0, 0.01)) << "it has moved";
+  for (int k = 1; k <= 9; ++k) ASSERT_FALSE(feedback.Update(1.0 + 1e-9, 0.104, 149.0, 0.01)) << k;
+  EXPECT_FALSE(feedback.Update(1.0 + 1e-9, 0.103, 149.0, 0.01));
+  EXPECT_TRUE(feedback.Update(1.0 + 1e-9, 0.104, 149.0, 0.01));
 }
 
 TEST(FrozenFeedback, AJointThatIsPushedMayNotRepeatForLong) {
-  FrozenFeedback feedback({0.004, 0.01, 0.095});
+  FrozenFeedback feedback({0.004, 0.01, 150.0, 0.095});
   for (int k = 0; k < 30; ++k) {
-    const bool pushed = k % 10 != 0;
-    ASSERT_FALSE(feedback.Update(1.0, 0.0, pushed, 0.01)) << k;
+    const double torque_Nm = k % 10 != 0 ? -150.0 : -149.0;
+    ASSERT_FALSE(feedback.Update(1.0, 0.0, torque_Nm, 0.01)) << k;
   }
-  EXPECT_TRUE(feedback.Update(1.0, 0.0, true, 0.01));
+  EXPECT_TRUE(feedback.Update(1.0, 0.0, -150.0, 0.01));
 }
 
 TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {

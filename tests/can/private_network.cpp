@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "firmware/can/unique_fd.h"
+#include "firmware/unique_fd.h"
 
 namespace armada {
 namespace {
