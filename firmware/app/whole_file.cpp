@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "firmware/unique_fd.h"
+
 namespace armada {
 namespace {
 
@@ -33,10 +35,8 @@ bool WriteTemporary(const std::string& path, const std::function<void(std::ostre
 
 // On the disk: a file before it takes the place of the old one, a folder before its new entry is relied on.
 void Sync(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  fsync(file);
-  close(file);
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.valid()) fsync(file.get());
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
+
+#include "tests/support/temp_dir.h"
 
 namespace armada {
 namespace {
@@ -15,16 +15,14 @@ namespace fs = std::filesystem;
 class LinkIdentityTest : public testing::Test {
  protected:
   LinkIdentityTest() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     link_.key_file = folder_ / "fleet.key";
     EXPECT_TRUE(MakeFleetKey(link_.key_file, &error_)) << error_;
   }
-  ~LinkIdentityTest() override { fs::remove_all(folder_); }
 
   bool Take(int sender) { return TakeIdentity(link_, sender, state_, &identity_, &error_); }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("link_identity_test_" + std::to_string(getpid()));
+  const TempDir temporary_;
+  const fs::path folder_ = temporary_.path();
   const std::string state_ = folder_ / "state";
   LcmLinkConfig link_;
   std::optional<LinkIdentity> identity_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "tests/drives/cia402_bench.h"
@@ -29,6 +30,13 @@ bool IsCommand(const CanFrame& frame) {
 }
 int16_t TorqueOf(const CanFrame& frame) {
   return static_cast<int16_t>(frame.data[2] | frame.data[3] << 8);
+}
+
+// As of a fleet file without a torque limit, which is looked at once more before it is refused.
+TEST(Cia402, AnUnknownTorqueLimitAllowsNone) {
+  JointDriveConfig joint = Cia402Joint(kNode);
+  joint.torque_limit_Nm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(cia402::MaxTorqueOf(joint), 0);
 }
 
 TEST(Cia402, IsUpFromColdInLessThanASecondOfTicks) {

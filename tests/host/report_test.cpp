@@ -15,6 +15,7 @@
 #include "host/report/number_text.h"
 #include "host/report/run_facts.h"
 #include "tests/host/report_golden/sample_run.h"
+#include "tests/support/temp_dir.h"
 
 namespace armada {
 namespace {
@@ -40,21 +41,6 @@ int RunCommand(const std::string& command, std::string* output) {
     output->append(buffer.data(), count);
   return pclose(pipe);
 }
-
-class TempDir {
- public:
-  TempDir() {
-    std::string name = (fs::temp_directory_path() / "armada_report_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  TempDir(const TempDir&) = delete;
-  TempDir& operator=(const TempDir&) = delete;
-  ~TempDir() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Sets PATH for as long as it lives.
 class ScopedPath {

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "tests/support/temp_dir.h"
 
 namespace armada {
 namespace {
@@ -15,12 +16,7 @@ namespace fs = std::filesystem;
 
 class FleetKeyTest : public testing::Test {
  protected:
-  FleetKeyTest() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    EXPECT_TRUE(MakeFleetKey(path_, &error_)) << error_;
-  }
-  ~FleetKeyTest() override { fs::remove_all(folder_); }
+  FleetKeyTest() { EXPECT_TRUE(MakeFleetKey(path_, &error_)) << error_; }
 
   void Write(const std::string& bytes) { std::ofstream(path_, std::ios::binary) << bytes; }
   /// Why the key is refused; fails the test when it is not.
@@ -29,7 +25,8 @@ class FleetKeyTest : public testing::Test {
     return error_;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("fleet_key_test_" + std::to_string(getpid()));
+  const TempDir temporary_;
+  const fs::path folder_ = temporary_.path();
   const std::string path_ = folder_ / "fleet.key";
   std::string error_;
 };
