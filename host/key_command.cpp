@@ -1,5 +1,6 @@
 #include "host/key_command.h"
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -16,9 +17,10 @@ int MakeKey(const std::string& path) {
     std::cerr << "armada key new: " << error << '\n';
     return kExitFailed;
   }
+  // A relative name in a fleet file is relative to that file, not to where the user is.
   std::cout << path
             << ": a new key, for the owner only. Copy it to every board of the fleet and name it in the "
-            << "fleet file:\n\n[link]\nkey_file = \"" << path << "\"\n";
+            << "fleet file:\n\n[link]\nkey_file = \"" << std::filesystem::absolute(path).string() << "\"\n";
   return kExitOk;
 }
 

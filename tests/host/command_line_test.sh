@@ -44,7 +44,7 @@ expect 2 'pins 8: there are 7 arms' "$armada" fleet line "$fleet" --pins 8
 expect 78 'nonexistent.toml' "$armada" fleet line /nonexistent.toml
 
 # Keys: for the owner alone, never over another; what others may read is refused before anything is started.
-expect 0 'key_file = ' "$armada" key new "$work/fleet.key"
+expect 0 "key_file = \"$work/fleet.key\"" "$armada" key new "$work/fleet.key"
 [ "$(stat -c '%a %s' "$work/fleet.key")" = '600 32' ] || fail "a key is 32 bytes, mode 0600"
 expect 1 'exists' "$armada" key new "$work/fleet.key"
 sed "s/^lcm_url.*/key_file = 'fleet.key'/" "$fleet" >"$work/keyed.toml"
