@@ -11,6 +11,9 @@ namespace {
 // Events closer together than this are one: below it, differences of times are rounding.
 constexpr double kSameInstant_s = 1e-9;
 
+// With all drives off for so long the brakes have closed.
+constexpr double kBrake_s = 0.1;
+
 }  // namespace
 
 EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
@@ -53,7 +56,18 @@ void EmulatedArm::ReleaseIfReady() {
   if (!std::all_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); }))
     return;
   released_ = true;
+  on_s_ = clock_s_;
   plant_.dq_rad_s = start_speed_rad_s_;
+  start_speed_rad_s_ = {};  // whoever is let go again stands
+}
+
+void EmulatedArm::BrakeIfOff() {
+  const bool on =
+      std::any_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); });
+  if (on) on_s_ = clock_s_;
+  if (!released_ || clock_s_ - on_s_ < kBrake_s) return;
+  released_ = false;
+  plant_.dq_rad_s = {};
 }
 
 void EmulatedArm::Integrate(double dt_s) {
@@ -90,6 +104,7 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
     if (clock_s_ >= quiet_until_s_) {
       for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);
     }
+    BrakeIfOff();
     ReleaseIfReady();
   }
 }

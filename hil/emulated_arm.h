@@ -11,7 +11,7 @@ namespace armada {
 
 /// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
 /// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
-/// let go with the start speed.
+/// let go with the start speed. With every drive off for 0.1 s the brakes close again.
 class EmulatedArm {
  public:
   /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial
@@ -36,6 +36,7 @@ class EmulatedArm {
   JointTruth TruthOf(size_t joint) const;
   double NextEventClock() const;
   void ReleaseIfReady();
+  void BrakeIfOff();
   void Integrate(double dt_s);
 
   PlantConfig config_;
@@ -51,6 +52,7 @@ class EmulatedArm {
   double quiet_until_s_ =
       0.0;  ///< on that clock: until then drives and disturbance do nothing and change nothing
   PlanarPlant::Joints tau_Nm_{};  ///< torque of the drives until then
+  double on_s_ = 0.0;             ///< when a drive was on last
   bool released_ = false;
   bool diverged_ = false;
 };

@@ -9,6 +9,7 @@
 #include "host/ablate/ablate_command.h"
 #include "host/can/can_command.h"
 #include "host/check.h"
+#include "host/ctl/ctl_command.h"
 #include "host/fleet/fleet_command.h"
 #include "host/floor/floor_command.h"
 #include "host/key_command.h"
@@ -16,6 +17,7 @@
 #include "host/run/run_command.h"
 #include "host/sim/sim_command.h"
 #include "host/spy/spy_command.h"
+#include "host/states_reference.h"
 #include "host/sweep/sweep_command.h"
 
 namespace {
@@ -143,11 +145,15 @@ int main(int argc, char** argv) {
   spy_command->callback([&] { code = RunSpyCommand(spy); });
 
   AddCanCommand(&app, &code);
+  AddCtlCommand(&app, &code);
   AddFleetCommand(&app, &code);
   AddKeyCommand(&app, &code);
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {
     WriteParameterReference(std::cout);
+  });
+  app.add_subcommand("states", "print the supervisor's states and causes (docs/states.md)")->callback([] {
+    WriteStatesReference(std::cout);
   });
 
   try {

@@ -87,7 +87,8 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
       sum_squares_m2 += arm.rms_m * arm.rms_m;
       ++tracking;
     }
-    if (arm.diverged || !arm.faults.empty()) ok = false;
+    const bool stands = arm.standing && arm.state == NameOf(ControllerState::kHold);
+    if (arm.diverged || (!arm.faults.empty() && !stands)) ok = false;
   }
   fleet_rms_m = tracking == 0 ? 0.0 : std::sqrt(sum_squares_m2 / tracking);
   if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;

@@ -26,7 +26,6 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
       period_ns_(Nanoseconds(timing.period_s)),
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
       transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
-      transmit_failures_max_(timing.transmit_failures_max),
       epoch_ns_(epoch_ns) {}
 
 bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
@@ -56,6 +55,7 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
     const int64_t now_ns = MonotonicNow();
     if (const int64_t late_periods = (now_ns - tick_ns) / period_ns_; late_periods > 0) {
       report_.missed_ticks += late_periods;  // gone; the newest one is done, not all of them
+      missed_before_tick_ = late_periods;
       tick_ns += late_periods * period_ns_;
     }
     Tick(tick_ns, now_ns);
@@ -82,14 +82,13 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
   out_.Clear();
   node_->Step(tick_ns, &out_);
-  if (bus_fault_ != FaultCause::kNone && node_->fault() == FaultCause::kNone) {
-    out_.Clear();  // no torque any more
-    node_->Fail(bus_fault_, &out_);
-  }
-  if (node_->fault() != FaultCause::kNone) bus_->DropWaiting();  // nothing old before the drives' rest
+  if (node_->state() == ControllerState::kFault) bus_->DropWaiting();  // nothing old before the drives' rest
   Send();
   ConfirmSent(MonotonicNow() + transmit_timeout_ns_);
   const int64_t sent_ns = MonotonicNow();
+  node_->bus_watch().OnTick(tick_ns, 1e-9 * static_cast<double>(sent_ns - tick_ns), missed_before_tick_);
+  missed_before_tick_ = 0;
+  AnswerOperator(tick_ns);
 
   ++report_.ticks;
   report_.wakeup_lateness.Add(woken_ns - tick_ns);
@@ -105,49 +104,22 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
 
 void ArmLoop::Send() {
   // A frame that the bus does not take is dropped and counted there: an old torque is never sent late.
-  for (const CanFrame& frame : out_) Note(bus_->Send(frame));
+  for (const CanFrame& frame : out_) node_->bus_watch().OnBus(bus_->Send(frame));
 }
 
 void ArmLoop::ConfirmSent(int64_t deadline_ns) {
   const BusStatus status = bus_->Flush(deadline_ns);
-  Note(status);
-  if (status == BusStatus::kOk) {
-    unsent_in_a_row_ = 0;
-    return;
-  }
-  ++report_.unsent_ticks;
-  if (++unsent_in_a_row_ >= transmit_failures_max_ && bus_fault_ == FaultCause::kNone) {
-    bus_fault_ = FaultCause::kTransmitStuck;
-  }
-}
-
-void ArmLoop::Note(BusStatus status) {
-  FaultCause cause = FaultCause::kNone;
-  switch (status) {
-    case BusStatus::kOk:
-    case BusStatus::kTimeout:
-    case BusStatus::kQueueFull:     // counted by the bus; ConfirmSent judges them
-    case BusStatus::kErrorPassive:  // counted by the bus; the arm can still be controlled
-      return;
-    case BusStatus::kBusOff:
-      cause = FaultCause::kBusOff;
-      break;
-    case BusStatus::kRestarted:
-      cause = FaultCause::kBusRestarted;
-      break;
-    case BusStatus::kDown:
-      cause = FaultCause::kBusDown;
-      break;
-  }
-  if (bus_fault_ == FaultCause::kNone) bus_fault_ = cause;
+  node_->bus_watch().OnBus(status);
+  node_->bus_watch().OnSent(status == BusStatus::kOk);
+  if (status != BusStatus::kOk) ++report_.unsent_ticks;
 }
 
 int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
   CanFrame frame;
   while (!node_->SamplesComplete()) {
     const BusStatus status = bus_->Receive(deadline_ns, &frame);
-    Note(status);
-    if (status == BusStatus::kErrorPassive) continue;
+    node_->bus_watch().OnBus(status);
+    if (status == BusStatus::kErrorPassive || status == BusStatus::kErrorActive) continue;
     if (status != BusStatus::kOk) break;
     node_->OnFrame(frame);
   }
@@ -159,7 +131,7 @@ void ArmLoop::TakeWaitingFrames() {
   CanFrame frame;
   for (int i = 0; i < kMostPerTick; ++i) {
     const BusStatus status = bus_->Receive(0, &frame);
-    Note(status);
+    node_->bus_watch().OnBus(status);
     if (status == BusStatus::kTimeout || status == BusStatus::kDown) return;
     if (status == BusStatus::kOk) node_->OnFrame(frame);
   }
@@ -167,6 +139,11 @@ void ArmLoop::TakeWaitingFrames() {
 
 void ArmLoop::TakeWaitingMessages() {
   link_->Drain([&](const LcmMessage& message) { node_->OnMessage(message); });
+}
+
+void ArmLoop::AnswerOperator(int64_t tick_ns) {
+  const std::span<const uint8_t> reply = node_->EncodeReply(tick_ns, &buffer_);
+  if (!reply.empty()) link_->Publish(node_->reply_channel(), reply);
 }
 
 void ArmLoop::PublishTelemetry() {

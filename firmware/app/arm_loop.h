@@ -29,7 +29,8 @@ class ArmLoop {
  public:
   ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns);
 
-  /// Brings the drives up until the epoch; false when one of them is not in torque mode by then, or on
+  /// Emulation only: brings the drives up until the epoch; false when one of them is not in torque mode by
+  /// then, or on
   /// `*stop`.
   bool BringUp(const volatile std::sig_atomic_t* stop);
   /// Runs ticks until `end_ns` or `*stop`, then disables the drives.
@@ -44,8 +45,6 @@ class ArmLoop {
   void Send();
   /// Waits until the torques are on the wire.
   void ConfirmSent(int64_t deadline_ns);
-  /// What the bus said: remembers what the tick has to fail for.
-  void Note(BusStatus status);
   /// Takes frames until the samples are complete or the deadline has passed; returns the time at which it had
   /// what it gets.
   int64_t AwaitSamples(int64_t deadline_ns);
@@ -53,6 +52,7 @@ class ArmLoop {
   void TakeWaitingFrames();
   /// Hears the neighbours, also while the drives come up: the kernel's queue is short.
   void TakeWaitingMessages();
+  void AnswerOperator(int64_t tick_ns);
   void PublishTelemetry();
 
   ArmNode* node_;
@@ -61,15 +61,13 @@ class ArmLoop {
   int64_t period_ns_;
   int64_t feedback_timeout_ns_;
   int64_t transmit_timeout_ns_;
-  int transmit_failures_max_;
   int64_t epoch_ns_;
   FrameList out_;
   MessageBuffer buffer_{};
   telemetry_t telemetry_{};
   LoopReport report_;
   ControllerState final_state_ = ControllerState::kInit;
-  FaultCause bus_fault_ = FaultCause::kNone;
-  int unsent_in_a_row_ = 0;
+  int64_t missed_before_tick_ = 0;
   int64_t heap_at_start_ = 0;
   int64_t faults_at_start_ = 0;
 };

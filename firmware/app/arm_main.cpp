@@ -45,6 +45,7 @@ struct Options {
   std::string state = DefaultStateFolder();
   std::string json;
   int priority = 80;
+  bool running = false;
 };
 
 int Fail(const Options& options, const std::string& message) {
@@ -96,10 +97,11 @@ int Run(const Options& options) {
                                : MonotonicNow() + static_cast<int64_t>(fleet->timing.bring_up_s * 1e9);
   const int64_t end_ns = options.seconds > 0.0 ? epoch_ns + static_cast<int64_t>(options.seconds * 1e9)
                                                : std::numeric_limits<int64_t>::max();
-  const auto node =
-      std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, identity);
+  const BoardStart start{options.running ? StartMode::kRunning : StartMode::kMonitor, FleetDigest(*fleet),
+                         identity};
+  const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, start);
   const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), fleet->timing, epoch_ns);
-  if (!loop->BringUp(&stop_requested)) {
+  if (options.running && !loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
                              ? "stopped before the start"
                              : "not every drive on " + entry.bus +
@@ -113,8 +115,9 @@ int Run(const Options& options) {
     WriteLoopReport(*loop, *node, *bus, *link, grant, file);
     if (!file.flush()) return Fail(options, "cannot write " + options.json);
   }
-  if (node->fault() != FaultCause::kNone) {
-    return Fail(options, std::string("ended in FAULT: ") + NameOf(node->fault()));
+  const ControllerState state = loop->final_state();
+  if (state == ControllerState::kFault || state == ControllerState::kSafeStop) {
+    return Fail(options, std::string("ended in ") + NameOf(state) + ": " + NameOf(node->cause()));
   }
   if (!options.learned.empty() &&
       !WriteInitialState(WarmStart(entry, node->controller()), entry, options.learned, &error)) {
@@ -129,8 +132,8 @@ int Run(const Options& options) {
 int main(int argc, char** argv) {
   armada::Options options;
   CLI::App app(
-      "Controller of one arm of a fleet: 100 Hz, fixed memory. HAZARD: it moves the arm as soon as it "
-      "starts.",
+      "Controller of one arm of a fleet: 100 Hz, fixed memory. It comes up in MONITOR, with its drives off, "
+      "and moves the arm after `armada ctl arm` and `armada ctl start`.",
       "armada-arm");
   app.add_option("FLEET", options.fleet, "fleet file (TOML)")->required();
   app.add_option("--arm", options.arm_id, "id of this board's arm")->required();
@@ -143,6 +146,9 @@ int main(int argc, char** argv) {
                  "write what the arm learns of its dynamics here, at the end of a run without a fault");
   app.add_option("--state", options.state, "folder for what must survive restarts: the number of starts")
       ->capture_default_str();
+  app.add_flag("--running", options.running,
+               "emulated arms only: enable the drives before the fleet's time 0, and run from there on. "
+               "HAZARD: no operator is asked");
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));

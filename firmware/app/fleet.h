@@ -8,6 +8,7 @@
 #include "firmware/core/arm_controller.h"
 #include "firmware/core/graph.h"
 #include "firmware/link/clock_offset.h"
+#include "firmware/link/silence_watch.h"
 
 namespace armada {
 
@@ -18,6 +19,7 @@ struct LcmLinkConfig {
   double age_max_s = 0.05;
   double plausible_step = 1.5;
   ClockOffset::Config clock;
+  SilenceWatch::Config silence;
 
   bool has_key() const { return key_file != LcmLinkConfig().key_file; }
 
@@ -41,6 +43,7 @@ struct LcmLinkConfig {
          "times what (A2) and (1.9) allow; predictive estimator only, the others chatter by more"},
         plausible_step);
     parameter.Table("clock", clock);
+    parameter.Table("silence", silence);
   }
 };
 

@@ -31,7 +31,8 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
   const LoopReport& report = loop.report();
   out << "{\n  \"id\": " << node.id() << ",\n  \"state\": \"" << NameOf(loop.final_state())
       << "\",\n  \"faults\": [";
-  if (node.fault() != FaultCause::kNone) out << '"' << NameOf(node.fault()) << '"';
+  if (HasStopped(loop.final_state()) && node.cause() != Cause::kNone)
+    out << '"' << NameOf(node.cause()) << '"';
   out << "],\n  \"timing\": {\n";
   Put(out, "wakeup_lateness", report.wakeup_lateness);
   Put(out, "compute", report.compute);
@@ -59,7 +60,7 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
       << ",\n    \"can_error_passive\": " << can.error_passive << ",\n    \"can_bus_off\": " << can.bus_off
       << ",\n    \"can_restarts\": " << can.restarts << ",\n    \"can_errors\": " << can.errors
       << ",\n    \"lcm_sent\": " << lcm.sent << ",\n    \"lcm_received\": " << lcm.received
-      << ",\n    \"lcm_rejected\": " << rejected.total() << ",\n    \"lcm_forged\": " << rejected.forged
+      << ",\n    \"lcm_rejected\": " << node.rejected_count() << ",\n    \"lcm_forged\": " << rejected.forged
       << ",\n    \"lcm_replayed\": " << rejected.replayed << ",\n    \"lcm_late\": " << rejected.late
       << ",\n    \"lcm_implausible\": " << rejected.implausible
       << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed

@@ -13,6 +13,7 @@ enum class [[nodiscard]] BusStatus{
     kQueueFull,     ///< the frame was dropped, not queued: an old torque is never sent late
     kErrorPassive,  ///< the controller has counted so many errors that it may no longer disturb the bus: a
                     ///< warning
+    kErrorActive,   ///< it no longer is
     kBusOff,        ///< the controller has left the bus; nothing is sent or received any more
     kRestarted,  ///< the controller was restarted after bus-off; drives may have lost their master meanwhile
     kDown,       ///< the interface or the socket is gone

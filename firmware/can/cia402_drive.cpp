@@ -31,6 +31,16 @@ Cia402Drive::Cia402Drive(const JointDriveConfig& config, bool sync_producer)
                                                     : std::min<int>(cia402::MaxTorqueOf(config), INT16_MAX)),
       setup_(config) {}
 
+bool Cia402Drive::Prepare(int64_t now_ns, FrameList* out) {
+  if (phase_ == Phase::kEnable) {
+    controlword_ = cia402::kDisableVoltage;
+    SendCommand(0, out);  // the drive watches this frame
+  } else if (phase_ != Phase::kTorque) {
+    BringUp(now_ns, out);
+  }
+  return phase_ == Phase::kEnable && heartbeat_seen_;
+}
+
 void Cia402Drive::BringUp(int64_t now_ns, FrameList* out) {
   Advance(now_ns, out);
   RequestSample(now_ns, out);  // the drive's status comes on SYNC, and it watches the master's heartbeat

@@ -21,6 +21,7 @@ class Cia402Drive final : public JointDrive {
   /// `sync_producer`: this drive also sends what its bus needs once, SYNC and the master's heartbeat.
   Cia402Drive(const JointDriveConfig& config, bool sync_producer);
 
+  bool Prepare(int64_t now_ns, FrameList* out) override;
   void BringUp(int64_t now_ns, FrameList* out) override;
   void RequestSample(int64_t now_ns, FrameList* out) override;
   /// Before the NMT start nothing; out of torque mode the controlword that stands, with zero torque.

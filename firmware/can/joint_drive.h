@@ -47,6 +47,12 @@ class JointDrive {
  public:
   virtual ~JointDrive() = default;
 
+  /// One tick of what the bring-up does with the power stage off: finds the drive, switches off what an
+  /// earlier master has left on, and configures it. True when only enabling is left. Until then the drive is
+  /// not asked for samples: any frame may feed the watchdog of a drive that still holds a torque. Call once a
+  /// control period, instead of BringUp, for as long as the drive is not to be enabled.
+  virtual bool Prepare(int64_t now_ns, FrameList* out) = 0;
+
   /// One tick of the bring-up: finds the drive, configures it and reads that back, has it prove its watchdog,
   /// enables it with zero torque, and from then on keeps it fed. Call once a control period until the first
   /// torque. Does nothing in kFault, and nothing ever again on a drive that was in torque mode and left it,

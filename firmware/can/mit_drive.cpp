@@ -54,6 +54,11 @@ const char* CubeMarsError(uint32_t code) {
 MitDrive::MitDrive(const JointDriveConfig& config)
     : config_(config), wiring_error_(WiringError(config)), setup_(config) {}
 
+bool MitDrive::Prepare(int64_t now_ns, FrameList* out) {
+  if (phase_ != Phase::kReady) BringUp(now_ns, out);
+  return phase_ == Phase::kReady;
+}
+
 void MitDrive::BringUp(int64_t now_ns, FrameList* out) {
   if (phase_ == Phase::kEnded) return;
   if (!wiring_error_.empty()) {
@@ -61,6 +66,7 @@ void MitDrive::BringUp(int64_t now_ns, FrameList* out) {
     return Enter(Phase::kEnded);
   }
   if (phase_ == Phase::kIdle) Enter(Phase::kDisable);
+  if (phase_ == Phase::kReady) Enter(Phase::kEnable);
   // An attempt takes as many ticks as the replies that confirm it.
   if (faulty() && phase_ != Phase::kTorque && ++faults_ > kRepliesToConfirm * config_.bring_up_attempts) {
     refused_ = true;
@@ -82,6 +88,7 @@ void MitDrive::BringUp(int64_t now_ns, FrameList* out) {
       out->Push(mit::EncodeSpecial(config_, Special::kEnable));
       break;
     case Phase::kIdle:
+    case Phase::kReady:
     case Phase::kEnded:
       return;
   }
@@ -167,8 +174,11 @@ void MitDrive::Advance() {
       if (faulty()) {
         Enter(Phase::kDisable);
       } else if (confirmed) {
-        Enter(Phase::kEnable);
+        Enter(Phase::kReady);
       }
+      break;
+    case Phase::kReady:
+      if (faulty()) Enter(Phase::kDisable);
       break;
     case Phase::kEnable:
       if (faulty()) {

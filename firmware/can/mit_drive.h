@@ -25,6 +25,7 @@ class MitDrive final : public JointDrive {
  public:
   explicit MitDrive(const JointDriveConfig& config);
 
+  bool Prepare(int64_t now_ns, FrameList* out) override;
   void BringUp(int64_t now_ns, FrameList* out) override;
   void RequestSample(int64_t now_ns, FrameList* out) override;
   void CommandTorque(double tau_Nm, FrameList* out) override;
@@ -49,6 +50,7 @@ class MitDrive final : public JointDrive {
     kDisable,  ///< switched off, old faults cleared
     kSetup,    ///< Damiao: registers
     kZero,     ///< the stored command made zero
+    kReady,    ///< to be switched on
     kEnable,   ///< switched on
     kTorque,
     kEnded,  ///< left, stopped or refused: zero torque only, until Reset()

@@ -12,6 +12,11 @@ using moteus::Mode;
 
 MoteusDrive::MoteusDrive(const JointDriveConfig& config) : config_(config) {}
 
+bool MoteusDrive::Prepare(int64_t now_ns, FrameList* out) {
+  if (phase_ != Phase::kArm) BringUp(now_ns, out);
+  return phase_ == Phase::kArm;
+}
+
 void MoteusDrive::BringUp(int64_t now_ns, FrameList* out) {
   switch (phase_) {
     case Phase::kIdle:

@@ -20,6 +20,7 @@ class MoteusDrive final : public JointDrive {
  public:
   explicit MoteusDrive(const JointDriveConfig& config);
 
+  bool Prepare(int64_t now_ns, FrameList* out) override;
   void BringUp(int64_t now_ns, FrameList* out) override;
   void RequestSample(int64_t now_ns, FrameList* out) override;
   void CommandTorque(double tau_Nm, FrameList* out) override;

@@ -23,6 +23,15 @@ ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
       heartbeats_to_trip_(kHeartbeatsToConfirm +
                           static_cast<int>(std::ceil(config.watchdog_s / config.odrive.heartbeat_s))) {}
 
+/// There is nothing to configure, and the watchdog shows only on an armed axis. One that an earlier master
+/// has left armed is disarmed.
+bool ODriveCanSimple::Prepare(int64_t /*now_ns*/, FrameList* out) {
+  if (!heard_) return false;
+  const bool armed = heartbeat_.state == AxisState::kClosedLoop;
+  if (armed) out->Push(odrive::EncodeSetAxisState(config_.node_id, AxisState::kIdle));
+  return phase_ == Phase::kBringUp && watchdog_ != DriveWatchdog::kOff && !armed;
+}
+
 void ODriveCanSimple::BringUp(int64_t /*now_ns*/, FrameList* out) {
   if (phase_ == Phase::kTorque) return CommandTorque(0.0, out);
   if (phase_ == Phase::kEnded || !heard_) return;

@@ -15,6 +15,7 @@ class ODriveCanSimple final : public JointDrive {
  public:
   explicit ODriveCanSimple(const JointDriveConfig& config);
 
+  bool Prepare(int64_t now_ns, FrameList* out) override;
   void BringUp(int64_t now_ns, FrameList* out) override;
   void RequestSample(int64_t now_ns, FrameList* out) override;
   /// Out of torque mode: zero, for the drive may be armed to prove its watchdog.

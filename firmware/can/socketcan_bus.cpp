@@ -275,9 +275,13 @@ BusStatus SocketCanBus::OnError(const CanFrame& frame) {
     return BusStatus::kRestarted;
   }
   constexpr uint8_t kPassive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
-  if ((frame.id & CAN_ERR_CRTL) != 0 && (frame.data[1] & kPassive) != 0) {
-    ++counters_.error_passive;
-    return BusStatus::kErrorPassive;
+  if ((frame.id & CAN_ERR_CRTL) != 0) {
+    if ((frame.data[1] & kPassive) != 0) {
+      ++counters_.error_passive;
+      return BusStatus::kErrorPassive;
+    }
+    constexpr uint8_t kBetter = CAN_ERR_CRTL_ACTIVE | CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING;
+    if ((frame.data[1] & kBetter) != 0) return BusStatus::kErrorActive;
   }
   return BusStatus::kOk;
 }

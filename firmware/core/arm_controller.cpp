@@ -12,15 +12,56 @@ std::variant<RobustLaw, PaperLaw> MakeLaw(const ArmControllerConfig& config, con
 
 }  // namespace
 
-ArmController::ArmController(const ArmControllerConfig& config, const ArmInitialState& initial)
+ArmController::ArmController(const ArmControllerConfig& config, const ArmInitialState& initial,
+                             StartMode start)
     : config_(config),
       arm_(config.arm),
       estimator_(config.estimator, initial.zeta),
+      initial_(initial),
       law_(MakeLaw(config, arm_, initial)),
+      hold_law_(config.control.supervisor),
+      watch_(config.control.supervisor, config.arm),
+      supervisor_(config.control.supervisor, start, config.timing.period_s),
       gate_(config.torque_limit_Nm) {
   status_.x_m = TaskVector::Zero(PlanarArm::kTaskDim);
   status_.zeta = initial.zeta;
   status_.tau_Nm = JointVector::Zero(arm_.dof());
+}
+
+JointVector ArmController::Step(const ArmInput& in) {
+  const double h = config_.timing.period_s;
+
+  // Networked algorithm (1.9): from t_k to t_k + h.
+  const Zeta zeta_at_tick = StepEstimator(in.tick_s, in.neighbours);
+  const Zeta zeta = Taylor(zeta_at_tick, in.sample_s - in.tick_s);
+
+  // Local algorithm (1.2), (1.5), (1.8) at the sample's time.
+  const bool law_runs = LawRuns(in);
+  const JointVector law_Nm = law_runs ? LawTorque(in, zeta) : JointVector(JointVector::Zero(arm_.dof()));
+  if (in.samples_valid) Observe(in, zeta);
+
+  // Supervisor: what is wrong, and what that makes of the state.
+  const ControllerState before = supervisor_.state();
+  CauseSet causes = in.causes;
+  causes.Set(Cause::kFeedbackNonsense, !in.q_rad.allFinite() || !in.dq_rad_s.allFinite());
+  causes.Set(Cause::kNonFiniteTorque, !law_Nm.allFinite() || !gate_.finite());
+  causes.Set(Cause::kLeaderLost, LosesTheLeader(in.neighbours));
+  causes |= watch_.Update(
+      {in.q_rad, status_.error_m, status_.sigma_min, gate_.saturated(), Follows(before), estimator_.synced()},
+      h);
+  const ControllerState state =
+      supervisor_.Step({causes, in.request, in.drives_ready, in.drives_enabled, in.samples_good,
+                        in.neighbours_good, estimator_.synced(), in.dq_rad_s.cwiseAbs().maxCoeff()},
+                       h);
+  if (state != before && state == ControllerState::kInit) StartAnew();
+
+  // Its gate and the limits come last.
+  const JointVector sent_Nm = gate_.Update(TorqueOf(state, law_Nm, in));
+  if (auto* robust = std::get_if<RobustLaw>(&law_); robust != nullptr && law_runs && law_Nm.allFinite())
+    robust->Applied(law_Nm, sent_Nm);
+  status_.state = state;
+  status_.tau_Nm = sent_Nm;
+  return sent_Nm;
 }
 
 Zeta ArmController::StepEstimator(double tick_s, const Neighbours& neighbours) {
@@ -34,35 +75,81 @@ Zeta ArmController::StepEstimator(double tick_s, const Neighbours& neighbours) {
   return zeta_at_tick;
 }
 
-JointVector ArmController::Step(const ArmInput& in) {
+// A neighbour whose news of the leader are older than this arm's has them from this arm, or no path of use.
+bool ArmController::LosesTheLeader(const Neighbours& neighbours) {
+  if (config_.estimator.leaderless) return false;
+  ever_synced_ = ever_synced_ || estimator_.synced();
+  const double own_age_s = estimator_.leader_age_s() - 0.5 * config_.timing.period_s;
+  bool has_path = neighbours.switching;
+  for (int j = 0; j < neighbours.count; ++j) {
+    const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
+    has_path = has_path || (neighbour.heard && !neighbour.silent && neighbour.leader_age_s <= own_age_s);
+  }
+  leader_lost_ = ever_synced_ && (!has_path || estimator_.leader_age_s() > config_.estimator.age_max_s);
+  return leader_lost_;
+}
+
+// From the tick on in which the drives are enabled; after a stop only once it is started anew.
+bool ArmController::LawRuns(const ArmInput& in) const {
+  return in.samples_valid && in.drives_enabled && supervisor_.state() != ControllerState::kSafeStop &&
+         supervisor_.state() != ControllerState::kFault;
+}
+
+JointVector ArmController::LawTorque(const ArmInput& in, const Zeta& zeta_at_sample) {
   const double h = config_.timing.period_s;
   const double elapsed_s = controlling_ ? in.sample_s - previous_sample_s_ : h;
   controlling_ = true;
   previous_sample_s_ = in.sample_s;
-
-  // Networked algorithm (1.9): from t_k to t_k + h.
-  const Zeta zeta_at_tick = StepEstimator(in.tick_s, in.neighbours);
-
-  // Local algorithm (1.2), (1.5), (1.8) at the sample's time.
-  const double sample_delay_s = in.sample_s - in.tick_s;
+  const bool degraded = supervisor_.state() == ControllerState::kDegraded;
   const LawInput law_input{in.q_rad,
                            in.dq_rad_s,
-                           Taylor(zeta_at_tick, sample_delay_s),
-                           Taylor(estimator_.zeta(), sample_delay_s),
+                           zeta_at_sample,
+                           Taylor(estimator_.zeta(), in.sample_s - in.tick_s),
                            estimator_.synced(),
                            elapsed_s,
-                           h};
-  const JointVector wanted = std::visit([&](auto& law) { return law.Torque(law_input); }, law_);
+                           h,
+                           !degraded,
+                           supervisor_.halves_gains() ? 0.5 : 1.0};
+  return std::visit([&](auto& law) { return law.Torque(law_input); }, law_);
+}
 
-  // Limits and gate come last.
-  const JointVector sent = gate_.Update(wanted);
-  if (auto* robust = std::get_if<RobustLaw>(&law_); robust != nullptr && !gate_.shut())
-    robust->Applied(wanted, sent);
+JointVector ArmController::TorqueOf(ControllerState state, const JointVector& law_Nm, const ArmInput& in) {
+  const StopLawInput stop{in.q_rad, in.dq_rad_s, theta_hat(), config_.timing.period_s};
+  const JointVector& K_s = config_.control.gains.K_s_Nms_rad;
+  const auto damping = [&] {
+    return DampingTorque(arm_, config_.control.supervisor.safe_stop_damping * K_s, stop);
+  };
+  if (state != ControllerState::kHold && state != ControllerState::kArming) hold_law_.Restart();
+  switch (state) {
+    case ControllerState::kRun:
+    case ControllerState::kDegraded: {
+      const double share = supervisor_.law_share();
+      return share < 1.0 ? JointVector(share * law_Nm + (1.0 - share) * damping()) : law_Nm;
+    }
+    case ControllerState::kArming:
+    case ControllerState::kHold:
+      return hold_law_.Torque(arm_, K_s, stop);
+    case ControllerState::kSafeStop:
+      return damping();
+    case ControllerState::kInit:
+    case ControllerState::kMonitor:
+    case ControllerState::kFault:
+      break;
+  }
+  return JointVector::Zero(arm_.dof());
+}
 
-  status_.state = gate_.shut() ? ControllerState::kFault : ControllerState::kRun;
-  status_.tau_Nm = sent;
-  Observe(in, law_input.zeta);
-  return sent;
+void ArmController::StartAnew() {
+  if (theta_hat().allFinite()) {
+    const ParameterMatrix P = P_theta();
+    initial_.theta_hat = theta_hat();
+    if (P.allFinite()) initial_.P_theta = P;
+  }
+  law_ = MakeLaw(config_, arm_, initial_);
+  controlling_ = false;
+  const Zeta& zeta = estimator_.zeta();
+  if (!zeta.x_m.allFinite() || !zeta.v_m_s.allFinite() || !zeta.a_m_s2.allFinite())
+    estimator_ = Estimator(config_.estimator, initial_.zeta);
 }
 
 void ArmController::Observe(const ArmInput& in, const Zeta& zeta) {

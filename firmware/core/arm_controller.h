@@ -5,8 +5,11 @@
 #include "firmware/core/control_config.h"
 #include "firmware/core/estimator.h"
 #include "firmware/core/limits.h"
+#include "firmware/core/motion_watch.h"
 #include "firmware/core/paper_law.h"
 #include "firmware/core/robust_law.h"
+#include "firmware/core/stop_law.h"
+#include "firmware/core/supervisor.h"
 
 namespace armada {
 
@@ -65,21 +68,14 @@ struct ArmInput {
   JointVector q_rad;
   JointVector dq_rad_s;
   Neighbours neighbours;
+  bool samples_valid = true;     ///< q and dq are of now, or predicted
+  bool samples_good = false;     ///< for control.supervisor.good_samples without a break
+  bool neighbours_good = false;  ///< the same
+  bool drives_ready = true;      ///< found and configured
+  bool drives_enabled = true;    ///< all in torque mode
+  CauseSet causes;               ///< of the board: its drives, buses and timing
+  Request request = Request::kNone;
 };
-
-enum class ControllerState : int { kInit = 0, kRun = 1, kFault = 2 };
-
-constexpr const char* NameOf(ControllerState state) {
-  switch (state) {
-    case ControllerState::kInit:
-      return "INIT";
-    case ControllerState::kRun:
-      return "RUN";
-    case ControllerState::kFault:
-      break;
-  }
-  return "FAULT";
-}
 
 /// What a tick leaves for people and for the record.
 struct ArmStatus {
@@ -96,14 +92,11 @@ struct ArmStatus {
 /// The controller of one arm: one Step a period, the same in simulation and on a board. Fixed memory.
 class ArmController {
  public:
-  ArmController(const ArmControllerConfig& config, const ArmInitialState& initial);
+  ArmController(const ArmControllerConfig& config, const ArmInitialState& initial, StartMode start);
 
-  /// One tick: estimator (1.9), law (1.2) with reference (1.5) and adaptation (1.8), limits, gate. Torque to
-  /// send, N m.
+  /// One tick: estimator (1.9), law (1.2) with reference (1.5) and adaptation (1.8), supervisor, limits.
+  /// Torque to send, N m; zero, and not to be sent, where the state gives none.
   JointVector Step(const ArmInput& in);
-  /// The networked algorithm (1.9) alone, for a tick in which the arm itself is out of action: neighbours
-  /// still need the estimate. Returns zeta at the tick.
-  Zeta StepEstimator(double tick_s, const Neighbours& neighbours);
 
   /// The state that neighbours may use, valid at `zeta_time_s()` on the clock of ArmInput.
   const Zeta& zeta() const { return estimator_.zeta(); }
@@ -115,19 +108,37 @@ class ArmController {
   JointVector d_hat_Nm() const;
   int saturated_ticks() const { return gate_.saturated_ticks(); }
   const ArmStatus& status() const { return status_; }
+  const Supervisor& supervisor() const { return supervisor_; }
+  ControllerState state() const { return supervisor_.state(); }
+  /// Nobody is heard any more who knows of the leader.
+  bool leader_lost() const { return leader_lost_; }
   const PlanarArm& arm() const { return arm_; }
 
  private:
+  /// (1.9) from the tick to the next; returns zeta at the tick.
+  Zeta StepEstimator(double tick_s, const Neighbours& neighbours);
+  bool LosesTheLeader(const Neighbours& neighbours);
+  bool LawRuns(const ArmInput& in) const;
+  JointVector LawTorque(const ArmInput& in, const Zeta& zeta_at_sample);
+  JointVector TorqueOf(ControllerState state, const JointVector& law_Nm, const ArmInput& in);
   void Observe(const ArmInput& in, const Zeta& zeta);
+  /// After a reset: what was learnt stays, as far as it is a number.
+  void StartAnew();
 
   ArmControllerConfig config_;
   PlanarArm arm_;
   Estimator estimator_;
+  ArmInitialState initial_;
   std::variant<RobustLaw, PaperLaw> law_;
+  HoldLaw hold_law_;
+  MotionWatch watch_;
+  Supervisor supervisor_;
   TorqueGate gate_;
   ArmStatus status_;
   bool estimating_ = false;
   bool controlling_ = false;
+  bool ever_synced_ = false;
+  bool leader_lost_ = false;
   double zeta_time_s_ = 0.0;
   double previous_sample_s_ = 0.0;
 };

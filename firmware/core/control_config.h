@@ -8,6 +8,7 @@
 #include "firmware/core/pseudoinverse.h"
 #include "firmware/core/reference.h"
 #include "firmware/core/subtask.h"
+#include "firmware/core/supervisor.h"
 
 namespace armada {
 
@@ -43,6 +44,7 @@ struct ControlConfig {
   SensorConfig sensor;
   ImplicitControlConfig implicit_control;
   SubtaskConfig subtask;
+  SupervisorConfig supervisor;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -58,6 +60,7 @@ struct ControlConfig {
     parameter.Table("sensor", sensor);
     parameter.Table("implicit_control", implicit_control);
     parameter.Table("subtask", subtask);
+    parameter.Table("supervisor", supervisor);
   }
 
   /// Single values spread over the joints and axes of an arm.
@@ -71,11 +74,13 @@ struct ControlConfig {
 struct LawInput {
   JointVector q_rad;
   JointVector dq_rad_s;
-  Zeta zeta;             ///< estimate at the sample
-  Zeta zeta_next;        ///< estimate one period later
-  bool synced = false;   ///< the estimate may be used for motion
-  double elapsed_s = 0;  ///< since the previous sample
-  double period_s = 0;   ///< h
+  Zeta zeta;                ///< estimate at the sample
+  Zeta zeta_next;           ///< estimate one period later
+  bool synced = false;      ///< the estimate may be used for motion
+  double elapsed_s = 0;     ///< since the previous sample
+  double period_s = 0;      ///< h
+  bool adapts = true;       ///< theta_hat follows what is measured
+  double gain_share = 1.0;  ///< of K_s and K_x
 };
 
 }  // namespace armada

@@ -64,11 +64,14 @@ struct Neighbour {
   double leader_age_s =
       0.0;  ///< age now of the newest leader state behind it; 0 for the leader, infinite for none
   TaskVector jerk_m_s3 = TaskVector::Zero(kMaxTaskDim);  ///< the leader's, as passed on; 0 where not known
+  bool silent = false;                                   ///< for longer than its link's losses explain
+  bool stopped = false;                                  ///< it says that it has stopped
 };
 
 struct Neighbours {
   std::array<Neighbour, kMaxNeighbours> list;
   int count = 0;
+  bool switching = false;  ///< topologies take turns: whoever is not used now may be in a moment
 };
 
 /// The networked algorithm (1.9) of one arm in discrete time. Per component c with m = sum_j w_j z_j / sum_j

@@ -42,10 +42,11 @@ JointVector PaperLaw::Torque(const LawInput& in) {
   const JointVector sign_s = s.cwiseSign();
   const GainsConfig& K = config_.gains;
   JointVector u = Y.lazyProduct(theta_hat_);
-  u -= J.transpose() * K.K_x_Ns_m.cwiseProduct(J * s);
-  u -= K.K_s_Nms_rad.cwiseProduct(s) + K.K_r_Nm.cwiseProduct(sign_s);  // (1.2)
+  u -= in.gain_share * (J.transpose() * K.K_x_Ns_m.cwiseProduct(J * s) + K.K_s_Nms_rad.cwiseProduct(s));
+  u -= K.K_r_Nm.cwiseProduct(sign_s);  // (1.2)
 
-  theta_hat_ -= (in.period_s * config_.adaptation.gradient_T) * Y.transpose().lazyProduct(s);  // (1.8)
+  if (in.adapts)
+    theta_hat_ -= (in.period_s * config_.adaptation.gradient_T) * Y.transpose().lazyProduct(s);  // (1.8)
   return u;
 }
 

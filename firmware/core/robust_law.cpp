@@ -52,7 +52,10 @@ void RobustLaw::Estimate(const LawInput& in) {
     return;
   }
   // The older torque held for the first L; over missed ticks the newer one went on.
-  filter_.Update(arm_, {tau_before_Nm_, latency_s_, tau_committed_Nm_}, sample, in.elapsed_s, theta_hat_);
+  ParameterVector theta_hat = theta_hat_;
+  filter_.Update(arm_, {tau_before_Nm_, latency_s_, tau_committed_Nm_}, sample, in.elapsed_s, theta_hat);
+  if (!in.adapts) return;
+  theta_hat_ = theta_hat;
   Project(config_.projection, arm_, theta_hat_);
 }
 
@@ -117,6 +120,7 @@ JointVector RobustLaw::ControlTorque(const JointState& from, bool follows, const
   const JacobianMatrix J = arm_.Jacobian(at);
   JointMatrix K = J.transpose() * config_.gains.K_x_Ns_m.asDiagonal() * J;
   K.diagonal() += config_.gains.K_s_Nms_rad;
+  K *= in.gain_share;
   JointVector feedback_Nm;
   if (config_.implicit_control.on) {
     // (1.2) with s at the end of the step: H (s+ - s)/h + K s+ + K_r sgn(s+) = 0.
@@ -131,7 +135,7 @@ JointVector RobustLaw::ControlTorque(const JointState& from, bool follows, const
   const JointVector u = Y.lazyProduct(theta_hat_) + feedback_Nm + filter_.d_hat_Nm();
 
   const AdaptationKind kind = config_.adaptation.kind;
-  if (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth) {
+  if (in.adapts && (kind == AdaptationKind::kGradient || kind == AdaptationKind::kBoth)) {
     GradientStep(config_.adaptation, Y, s, h, theta_hat_);  // (1.8)
     Project(config_.projection, arm_, theta_hat_);
   }

@@ -16,6 +16,8 @@ inline constexpr size_t kMaxChannelName = 15;
 inline constexpr std::string_view kLeaderChannel = "LEADER";
 inline constexpr std::string_view kEstimatePrefix = "EST_";
 inline constexpr std::string_view kTelemetryPrefix = "TEL_";
+inline constexpr std::string_view kReplyPrefix = "ACK_";
+inline constexpr std::string_view kCommandChannel = "CMD";
 
 /// The name of one arm's channel, <prefix><arm id>, in fixed storage.
 class ArmChannel {
@@ -39,6 +41,9 @@ inline ArmChannel EstimateChannel(int arm_id) {
 }
 inline ArmChannel TelemetryChannel(int arm_id) {
   return {kTelemetryPrefix, arm_id};
+}
+inline ArmChannel ReplyChannel(int arm_id) {
+  return {kReplyPrefix, arm_id};
 }
 
 /// The arm whose channel of that prefix this is; nothing when it is another's, or not written as ArmChannel

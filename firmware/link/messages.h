@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <span>
 
+#include "armada/command_t.hpp"
 #include "armada/estimate_t.hpp"
 #include "armada/leader_t.hpp"
+#include "armada/reply_t.hpp"
 #include "armada/telemetry_t.hpp"
 
 namespace armada {
@@ -20,12 +22,16 @@ inline constexpr int64_t kMaxStampNs = int64_t{1} << 62;
 std::span<const uint8_t> Encode(const leader_t& message, MessageBuffer* buffer);
 std::span<const uint8_t> Encode(const estimate_t& message, MessageBuffer* buffer);
 std::span<const uint8_t> Encode(const telemetry_t& message, MessageBuffer* buffer);
+std::span<const uint8_t> Encode(const command_t& message, MessageBuffer* buffer);
+std::span<const uint8_t> Encode(const reply_t& message, MessageBuffer* buffer);
 
 /// Decodes and checks. False, with `*message` in any state, unless the length and the type's fingerprint fit,
 /// every number is finite, the stamp is in 0 to kMaxStampNs, the sequence is at least 1, and task_dim,
-/// arm_id, dof, agreement and parameter_count are in their ranges. None allocates.
+/// arm_id, dof, agreement, parameter_count, states, causes and requests are in their ranges. None allocates.
 bool Decode(std::span<const uint8_t> payload, leader_t* message);
 bool Decode(std::span<const uint8_t> payload, estimate_t* message);
 bool Decode(std::span<const uint8_t> payload, telemetry_t* message);
+bool Decode(std::span<const uint8_t> payload, command_t* message);
+bool Decode(std::span<const uint8_t> payload, reply_t* message);
 
 }  // namespace armada

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "firmware/core/types.h"
 #include "firmware/link/fleet_key.h"
 #include "firmware/link/messages.h"
 
@@ -31,6 +32,8 @@ struct LinkIdentity {
 
 /// The leader's number as a sender; an arm's is its id.
 inline constexpr int kLeaderSender = 0;
+/// Whoever gives commands: no arm's.
+inline constexpr int kOperatorSender = kMaxArms + 1;
 
 /// Seals what one sender publishes. No heap.
 class Sealer {

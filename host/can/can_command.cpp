@@ -129,6 +129,9 @@ int DecodeBus(const DecodeOptions& options, const std::vector<BusMessage>& messa
       case BusStatus::kErrorPassive:
         event = "error frame: error passive";
         break;
+      case BusStatus::kErrorActive:
+        event = "error frame: no longer error passive";
+        break;
       case BusStatus::kRestarted:
         event = "error frame: restarted";
         break;

@@ -203,10 +203,10 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     const std::string id = std::to_string(arm.id);
     std::vector<std::string> board;
     if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
-    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
-                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"),
-                               "--learned", LearnedFile(In("learned"), arm.id), "--state", In("state"),
-                               "--json", In("arm_" + id + ".json")});
+    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--running",
+                               "--epoch-ns", epoch, "--seconds", Seconds(), "--initial",
+                               In("initial_" + id + ".toml"), "--learned", LearnedFile(In("learned"), arm.id),
+                               "--state", In("state"), "--json", In("arm_" + id + ".json")});
     if (!Start(group, "arm " + id, std::move(board), error)) return false;
   }
   return scenario_.leader.kind == LeaderKind::kNone ||

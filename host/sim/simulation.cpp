@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/app/config/fleet_file.h"
 #include "firmware/app/initial_state.h"
 #include "host/floor/floor.h"
 
@@ -40,10 +41,11 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
   if (scenario_.leader.kind != LeaderKind::kNone) leader_.emplace(scenario_.leader);
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
   arms_.reserve(scenario_.fleet.arms.size());
+  const BoardStart board{StartMode::kRunning, FleetDigest(scenario_.fleet), std::nullopt};
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, seed, leader);
     arms_.push_back(
-        Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
+        Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_, board),
             .bench = EmulatedArm(scenario_, i, seed, start, leader, -scenario_.fleet.timing.bring_up_s),
             .record = TrackingRecord(scenario_),
             .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
@@ -220,8 +222,8 @@ bool Simulation::WriteLearned(const std::string& folder, std::string* error) con
   for (size_t i = 0; i < arms_.size(); ++i) {
     const ArmNode& node = arms_[i].node;
     const ArmEntry& entry = scenario_.fleet.arms[i];
-    if (node.fault() == FaultCause::kNone && !WriteInitialState(WarmStart(entry, node.controller()), entry,
-                                                                LearnedFile(folder, entry.id), error)) {
+    if (GivesTorque(node.state()) && !WriteInitialState(WarmStart(entry, node.controller()), entry,
+                                                        LearnedFile(folder, entry.id), error)) {
       return false;
     }
   }
@@ -261,7 +263,8 @@ RunMetrics Simulation::Result() const {
     result.floor_posture_rad = arm.floor_posture_rad;
     arm.subtask_record.WriteTo(&result);
     result.state = NameOf(arm.node.state());
-    if (arm.node.fault() != FaultCause::kNone) result.faults.emplace_back(NameOf(arm.node.fault()));
+    if (HasStopped(arm.node.state()) && arm.node.cause() != Cause::kNone)
+      result.faults.emplace_back(NameOf(arm.node.cause()));
     metrics.arms.push_back(std::move(result));
   }
   metrics.Judge(scenario_.criterion);

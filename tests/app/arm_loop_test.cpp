@@ -45,7 +45,7 @@ TEST_F(ArmLoopTest, NoMessageIsLostWhileTheDrivesComeUp) {
   ASSERT_TRUE(leader != nullptr && link != nullptr) << error;
 
   const int64_t epoch_ns = MonotonicNow() + 200'000'000;
-  ArmNode node(scenario->fleet, 0, NominalInitialState(scenario->fleet.arms[0]), epoch_ns);
+  ArmNode node(scenario->fleet, 0, NominalInitialState(scenario->fleet.arms[0]), epoch_ns, {});
   TalkativeBus bus(leader.get());
   ArmLoop loop(&node, &bus, link.get(), scenario->fleet.timing, epoch_ns);
   const volatile std::sig_atomic_t never = 0;

@@ -30,7 +30,7 @@ class Board : public testing::Test {
       : scenario_(PaperScenario()),
         leader_(scenario_.leader),
         start_(DrawStart(scenario_, 0, 1, &leader_)),
-        node_(scenario_.fleet, 0, start_.controller, kEpochNs),
+        node_(scenario_.fleet, 0, start_.controller, kEpochNs, {StartMode::kRunning, 0, std::nullopt}),
         bench_(scenario_, 0, 1, start_, &leader_, -0.5) {
     for (int64_t k = -50; k < 0; ++k) {
       ready_ = node_.BringUp(NanosecondsOf(k), &to_drives_);
@@ -141,7 +141,7 @@ TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleForEver) {
   const int64_t frozen_at = k;
   frozen_ = true;
   while (k < frozen_at + 50 && node_.state() != ControllerState::kFault) Tick(k++);
-  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackFrozen);
+  EXPECT_EQ(node_.cause(), Cause::kFeedbackFrozen);
   EXPECT_LE(k - frozen_at, 5);
   EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
 }
@@ -152,7 +152,7 @@ TEST_F(Board, StopsWhenADriveRepeatsItsLastSampleFromRest) {
   ASSERT_LT(std::abs(bench_.plant().dq_rad_s[0]), 0.05);
   frozen_ = true;
   while (k < 200 && node_.state() != ControllerState::kFault) Tick(k++);
-  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackFrozen);
+  EXPECT_EQ(node_.cause(), Cause::kFeedbackFrozen);
   EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
 }
 
@@ -191,7 +191,7 @@ TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
   deaf_to_ = 2;
   for (int64_t k = 200; k < 300; ++k) Tick(k);
   ASSERT_EQ(node_.state(), ControllerState::kFault);
-  EXPECT_EQ(node_.fault(), FaultCause::kFeedbackStale);
+  EXPECT_EQ(node_.cause(), Cause::kFeedbackStale);
   estimate_t estimate;
   ASSERT_TRUE(Decode(node_.EncodeEstimate(NanosecondsOf(300), &buffer_), &estimate));
   EXPECT_EQ(estimate.stamp_ns, NanosecondsOf(300));
@@ -204,18 +204,20 @@ TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
   EXPECT_EQ(telemetry.stamp_ns, NanosecondsOf(299));
 }
 
-TEST_F(Board, BrakesWhenTheLeaderFallsSilent) {
+TEST_F(Board, HoldsWithin110MillisecondsWhenTheLeaderFallsSilent) {
   for (int64_t k = 0; k < 400; ++k) Tick(k);
   ASSERT_TRUE(node_.controller().estimator().synced());
   silent_ = true;
-  for (int64_t k = 400; k < 600; ++k) Tick(k);
+  for (int64_t k = 400; k < 411; ++k) Tick(k);
+  EXPECT_EQ(node_.state(), ControllerState::kHold);
+  EXPECT_EQ(node_.cause(), Cause::kLeaderLost);
+  for (int64_t k = 411; k < 600; ++k) Tick(k);
   EXPECT_FALSE(node_.controller().estimator().synced());
-  EXPECT_EQ(node_.state(), ControllerState::kRun);
   for (size_t i = 0; i < 2; ++i) EXPECT_LT(std::abs(bench_.plant().dq_rad_s[i]), 0.5) << "joint " << i + 1;
 }
 
 TEST_F(Board, WithoutDrivesInTorqueModeSendsNoTorque) {
-  ArmNode fresh(scenario_.fleet, 0, start_.controller, kEpochNs);
+  ArmNode fresh(scenario_.fleet, 0, start_.controller, kEpochNs, {StartMode::kRunning, 0, std::nullopt});
   FrameList out;
   fresh.RequestSamples(kEpochNs, &out);
   fresh.Step(kEpochNs, &out);
@@ -249,7 +251,7 @@ TEST_F(Board, DropsAStateThatCannotFollowTheLastOne) {
 
 TEST_F(Board, OfAFleetWithAKeyBelievesSealedMessagesOnlyAndSealsItsOwn) {
   const LinkIdentity identity{{1, 2, 3}, 1};
-  ArmNode node(scenario_.fleet, 0, start_.controller, kEpochNs, identity);
+  ArmNode node(scenario_.fleet, 0, start_.controller, kEpochNs, {StartMode::kMonitor, 0, identity});
   Sealer leader(identity, kLeaderSender);
   leader_t message{};
   message.task_dim = 2;

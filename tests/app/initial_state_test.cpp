@@ -49,14 +49,18 @@ ArmInitialState Learnt(const ArmEntry& arm) {
   config.torque_limit_Nm = JointVector::Constant(arm.arm.dof, 300.0);
   ArmInitialState initial = NominalInitialState(arm);
   initial.theta_hat *= 2.0;
-  ArmController controller(config, initial);
+  ArmController controller(config, initial, StartMode::kRunning);
   JointVector q_rad = JointVector::LinSpaced(arm.arm.dof, 0.3, 0.9);
   JointVector dq_rad_s = JointVector::Zero(arm.arm.dof);
   for (int k = 0; k < 50; ++k) {
     const double t_s = k * config.timing.period_s;
     q_rad += config.timing.period_s * dq_rad_s;
     dq_rad_s.setConstant(std::sin(5.0 * t_s));
-    controller.Step({t_s, t_s, q_rad, dq_rad_s, {}});
+    ArmInput in;
+    in.tick_s = in.sample_s = t_s;
+    in.q_rad = q_rad;
+    in.dq_rad_s = dq_rad_s;
+    controller.Step(in);
   }
   return WarmStart(arm, controller);
 }

@@ -11,7 +11,7 @@ namespace {
 
 void ExpectNoAllocation(const ArmControllerConfig& config, RandomArms& random) {
   const PlanarArm arm(config.arm);
-  ArmController controller(config, {PaperLeader(0.0), arm.Theta()});
+  ArmController controller(config, {PaperLeader(0.0), arm.Theta()}, StartMode::kRunning);
   ArmInput in;
   in.neighbours.count = 3;
   JointVector q = random.Numbers(arm.dof(), 1.0);

@@ -4,6 +4,8 @@
 
 #include <Eigen/LU>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "tests/core/closed_loop.h"
 #include "tests/core/paper_setting.h"
@@ -45,7 +47,8 @@ TEST(ArmController, NeverSendsMoreThanTheTorqueLimit) {
   for (const LawKind law : {LawKind::kPaper, LawKind::kRobust}) {
     for (int dof = 1; dof <= kMaxDof; ++dof) {
       const ArmControllerConfig config = Config(dof, law, random);
-      ArmController controller(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()});
+      ArmController controller(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()},
+                               StartMode::kRunning);
       ClosedLoop loop = Loop(config);
       for (int k = 0; k < 50; ++k) {
         ArmInput in = loop.Sample();
@@ -86,6 +89,7 @@ TEST(ArmController, NonFiniteInputEndsInFaultWithZeroTorque) {
           continue;  // absurd but a number: limited is enough
         EXPECT_TRUE(tau_Nm.isZero(0.0));
         EXPECT_EQ(controller.status().state, ControllerState::kFault);
+        EXPECT_EQ(controller.supervisor().cause(), Cause::kFeedbackNonsense);
         ArmInput good = loop.Sample();
         good.tick_s += 0.01;
         good.sample_s += 0.01;
@@ -96,20 +100,24 @@ TEST(ArmController, NonFiniteInputEndsInFaultWithZeroTorque) {
   }
 }
 
-TEST(ArmController, NonFiniteNeighboursOrParametersEndInFaultToo) {
+// The joints are known: the arm brakes.
+TEST(ArmController, NonFiniteNeighboursOrParametersEndInASafeStop) {
   const ArmControllerConfig config = PaperController(PaperArm(1));
   ClosedLoop loop = Loop(config);
   loop.plant().q_rad = {0.3, 1.2};
   loop.RunUntil(0.2);
   ArmInput in = loop.Sample();
   in.neighbours.list[0].zeta.x_m[0] = kNan;
-  EXPECT_TRUE(loop.controller().Step(in).isZero(0.0));
-  EXPECT_EQ(loop.controller().status().state, ControllerState::kFault);
+  EXPECT_TRUE(loop.controller().Step(in).allFinite());
+  EXPECT_EQ(loop.controller().state(), ControllerState::kSafeStop);
+  EXPECT_EQ(loop.controller().supervisor().cause(), Cause::kNonFiniteTorque);
+  for (int k = 0; k < 200; ++k) EXPECT_TRUE(loop.controller().Step(loop.Sample()).allFinite());
+  EXPECT_EQ(loop.controller().state(), ControllerState::kFault);
 
-  ArmController unknown(config, {PaperLeader(0.0), ParameterVector::Constant(3, kNan)});
+  ArmController unknown(config, {PaperLeader(0.0), ParameterVector::Constant(3, kNan)}, StartMode::kRunning);
   in = Loop(config).Sample();
   EXPECT_TRUE(unknown.Step(in).isZero(0.0));
-  EXPECT_EQ(unknown.status().state, ControllerState::kFault);
+  EXPECT_EQ(unknown.state(), ControllerState::kFault) << "it has not started yet";
 }
 
 TEST(ArmController, EstimateIsValidOnePeriodAfterTheTick) {
@@ -185,9 +193,10 @@ TEST(ArmController, StatusTellsWhatThePaperPlots) {
 }
 
 TEST(ArmController, StatesHaveNames) {
-  EXPECT_STREQ(NameOf(ControllerState::kInit), "INIT");
-  EXPECT_STREQ(NameOf(ControllerState::kRun), "RUN");
-  EXPECT_STREQ(NameOf(ControllerState::kFault), "FAULT");
+  const std::vector<std::string> names = {"INIT",     "MONITOR", "ARMING",    "RUN",
+                                          "DEGRADED", "HOLD",    "SAFE_STOP", "FAULT"};
+  for (int i = 0; i < kControllerStates; ++i)
+    EXPECT_EQ(NameOf(static_cast<ControllerState>(i)), names[static_cast<size_t>(i)]);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ class ClosedLoop {
              std::function<Zeta(double)> leader)
       : period_s_(config.timing.period_s),
         latency_s_(config.timing.sample_to_torque_s),
-        controller_(config, initial),
+        controller_(config, initial, StartMode::kRunning),
         plant_(config.arm),
         tau_Nm_(JointVector::Zero(config.arm.dof)),
         leader_(std::move(leader)) {}

@@ -36,17 +36,17 @@ TEST(TorqueGate, NeverSendsMoreThanTheLimitOfAnyJoint) {
   EXPECT_GT(saturated, 500);
 }
 
-TEST(TorqueGate, ShutsForGoodOnAnyNonFiniteValue) {
+TEST(TorqueGate, SendsZeroInPlaceOfAnyNonFiniteValue) {
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (int joint = 0; joint < 3; ++joint) {
       TorqueGate gate(kLimit_Nm);
       JointVector wanted{{1.0, 2.0, 3.0}};
       gate.Update(wanted);
-      EXPECT_FALSE(gate.shut());
+      EXPECT_TRUE(gate.finite());
       wanted[joint] = bad;
       EXPECT_TRUE(gate.Update(wanted).isZero(0.0));
-      EXPECT_TRUE(gate.shut());
-      EXPECT_TRUE(gate.Update(JointVector{{1.0, 2.0, 3.0}}).isZero(0.0));
+      EXPECT_FALSE(gate.finite());
+      EXPECT_EQ(gate.Update(JointVector{{1.0, 2.0, 3.0}}), (JointVector{{1.0, 2.0, 3.0}}));
     }
   }
 }

@@ -26,6 +26,7 @@ def leader(armada):
 def estimate(armada):
     m = armada.estimate_t()
     m.stamp_ns, m.sequence, m.arm_id, m.task_dim = 1_000_000_007, 258, 7, 3
+    m.state, m.stopped, m.fleet_digest = 6, True, 0x1122334455667788
     m.agreement, m.leader_age_s = 0x0102, -1.0
     m.x_m, m.v_m_s, m.a_m_s2 = [1.0, 2.0, 3.0], [-1.0, -2.0, -3.0], [0.5, 0.25, 0.125]
     m.jerk_m_s3 = [-4.0, 8.0, -0.25]
@@ -35,13 +36,27 @@ def estimate(armada):
 def telemetry(armada):
     m = armada.telemetry_t()
     m.stamp_ns, m.sequence = 2_000_000_000, 3
-    m.arm_id, m.dof, m.task_dim, m.parameter_count, m.state, m.synced = 6, 7, 2, 35, 4, True
+    m.arm_id, m.dof, m.task_dim, m.parameter_count, m.state, m.cause, m.synced = 6, 7, 2, 35, 4, 3, True
     m.q_rad, m.dq_rad_s, m.tau_Nm, m.d_hat_Nm = ([base + i for i in range(7)] for base in (1.0, 11.0, 21.0, 31.0))
     m.x_m, m.error_m, m.subtask_error_rad_s, m.sigma_min = [0.5, 1.5, 0.0], 0.25, 0.75, 0.125
     m.theta_hat = [100.0 + i for i in range(35)]
     m.saturated_ticks, m.missed_ticks, m.wakeup_lateness_us = 1, 2, -3
     m.compute_us, m.sample_to_torque_us, m.heap_allocations, m.page_faults = 4, 5, 6, 7
     m.can_sent, m.can_received, m.can_dropped, m.lcm_received, m.lcm_rejected = 8, 9, 10, 11, 12
+    return m
+
+
+def command(armada):
+    m = armada.command_t()
+    m.stamp_ns, m.sequence, m.arm_id, m.request = 3_000_000_000, 5, 7, 2
+    m.heard_stamp_ns, m.fleet_digest = 1_000_000_007, -2
+    return m
+
+
+def reply(armada):
+    m = armada.reply_t()
+    m.stamp_ns, m.sequence, m.arm_id, m.request = 1_010_000_007, 9, 7, 2
+    m.command_stamp_ns, m.command_sequence, m.refusals, m.state, m.cause = 3_000_000_000, 5, 0x81, 5, 6
     return m
 
 
@@ -66,6 +81,8 @@ def main():
         wrong = 0
         for name, expected in (("kLeaderHex", leader(armada).encode()), ("kEstimateHex", estimate(armada).encode()),
                                ("kTelemetryHex", telemetry(armada).encode()),
+                               ("kCommandHex", command(armada).encode()),
+                               ("kReplyHex", reply(armada).encode()),
                                ("kSealedEstimateHex", sealed(7, b"EST_7", estimate(armada).encode()))):
             expected = expected.hex()
             if golden.get(name) != expected:

@@ -34,6 +34,9 @@ inline estimate_t GoldenEstimate() {
   message.sequence = 258;
   message.arm_id = 7;
   message.task_dim = 3;
+  message.state = 6;
+  message.stopped = 1;
+  message.fleet_digest = 0x1122334455667788;
   message.agreement = 0x0102;
   message.leader_age_s = -1.0F;
   Set(message.x_m, 1.0, 2.0, 3.0);
@@ -52,6 +55,7 @@ inline telemetry_t GoldenTelemetry() {
   message.task_dim = 2;
   message.parameter_count = 35;
   message.state = 4;
+  message.cause = 3;
   message.synced = 1;
   std::iota(std::begin(message.q_rad), std::end(message.q_rad), 1.0);
   std::iota(std::begin(message.dq_rad_s), std::end(message.dq_rad_s), 11.0);
@@ -74,6 +78,31 @@ inline telemetry_t GoldenTelemetry() {
   message.can_dropped = 10;
   message.lcm_received = 11;
   message.lcm_rejected = 12;
+  return message;
+}
+
+inline command_t GoldenCommand() {
+  command_t message{};
+  message.stamp_ns = 3'000'000'000;
+  message.sequence = 5;
+  message.arm_id = 7;
+  message.request = 2;
+  message.heard_stamp_ns = 1'000'000'007;
+  message.fleet_digest = -2;
+  return message;
+}
+
+inline reply_t GoldenReply() {
+  reply_t message{};
+  message.stamp_ns = 1'010'000'007;
+  message.sequence = 9;
+  message.arm_id = 7;
+  message.request = 2;
+  message.command_stamp_ns = 3'000'000'000;
+  message.command_sequence = 5;
+  message.refusals = 0x81;
+  message.state = 5;
+  message.cause = 6;
   return message;
 }
 

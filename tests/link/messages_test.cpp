@@ -46,6 +46,8 @@ TEST(Messages, EncodeToTheBytesOfAnIndependentCodec) {
   EXPECT_EQ(Hex(Encode(GoldenLeader(), &buffer)), kLeaderHex);
   EXPECT_EQ(Hex(Encode(GoldenEstimate(), &buffer)), kEstimateHex);
   EXPECT_EQ(Hex(Encode(GoldenTelemetry(), &buffer)), kTelemetryHex);
+  EXPECT_EQ(Hex(Encode(GoldenCommand(), &buffer)), kCommandHex);
+  EXPECT_EQ(Hex(Encode(GoldenReply(), &buffer)), kReplyHex);
 }
 
 template <class Message>
@@ -136,6 +138,27 @@ TYPED_TEST(EveryMessage, OfRandomBytesIsRefusedOrValid) {
   }
   EXPECT_GT(accepted, 0);
   EXPECT_LT(accepted, 20'000);
+}
+
+TEST(Command, IsRefusedWithAnythingOutOfRange) {
+  EXPECT_TRUE(IsAccepted(GoldenCommand()));
+  const auto refused = [](auto change) { return !IsAcceptedAfter(GoldenCommand(), change); };
+  EXPECT_TRUE(refused([](command_t& m) { m.arm_id = -1; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.arm_id = kMaxArms + 1; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.request = 0; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.request = 6; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.heard_stamp_ns = -1; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.stamp_ns = kMaxStampNs + 1; }));
+  EXPECT_TRUE(refused([](command_t& m) { m.sequence = 0; }));
+}
+
+TEST(Reply, IsRefusedWithAnythingOutOfRange) {
+  EXPECT_TRUE(IsAccepted(GoldenReply()));
+  const auto refused = [](auto change) { return !IsAcceptedAfter(GoldenReply(), change); };
+  EXPECT_TRUE(refused([](reply_t& m) { m.arm_id = 0; }));
+  EXPECT_TRUE(refused([](reply_t& m) { m.request = 6; }));
+  EXPECT_TRUE(refused([](reply_t& m) { m.state = 8; }));
+  EXPECT_TRUE(refused([](reply_t& m) { m.cause = -1; }));
 }
 
 TEST(Leader, IsRefusedWhenAnyNumberIsNotFinite) {

@@ -110,7 +110,8 @@ class BoardFaults : public testing::Test {
       fault_wall_s_ = WallTime();
       fault(drives);
     });
-    node_ = std::make_unique<ArmNode>(scenario_.fleet, 0, start.controller, epoch_ns);
+    node_ = std::make_unique<ArmNode>(scenario_.fleet, 0, start.controller, epoch_ns,
+                                      BoardStart{StartMode::kRunning, 0, std::nullopt});
     ArmLoop loop(node_.get(), bus.get(), link.get(), scenario_.fleet.timing, epoch_ns);
     const volatile std::sig_atomic_t never = 0;
     ASSERT_TRUE(loop.BringUp(&never)) << node_->ExplainDrives();
@@ -150,8 +151,8 @@ class BoardFaults : public testing::Test {
     }
     return last_s - fault_wall_s_;
   }
-  void ExpectFault(FaultCause cause) {
-    EXPECT_STREQ(NameOf(node_->fault()), NameOf(cause));
+  void ExpectFault(Cause cause) {
+    EXPECT_STREQ(NameOf(node_->cause()), NameOf(cause));
     EXPECT_EQ(node_->state(), ControllerState::kFault);
   }
 
@@ -168,7 +169,7 @@ class BoardFaults : public testing::Test {
 
 TEST_F(BoardFaults, WithoutAFaultTorquesFlowToTheEnd) {
   RunWith([](FaultyBus*) {});
-  EXPECT_EQ(node_->fault(), FaultCause::kNone);
+  EXPECT_EQ(node_->cause(), Cause::kNone);
   EXPECT_NEAR(LastTorqueAfterFault_s(), kEnd_s - kFault_s, kTwoTicks_s);
   EXPECT_EQ(report_.unsent_ticks, 0);
   EXPECT_EQ(report_.missed_ticks, 0);
@@ -176,20 +177,20 @@ TEST_F(BoardFaults, WithoutAFaultTorquesFlowToTheEnd) {
 
 TEST_F(BoardFaults, BusOffEndsTheTorquesWithinTwoTicks) {
   RunWith([&](FaultyBus*) { interface_.InjectError(kBusOff); });
-  ExpectFault(FaultCause::kBusOff);
+  ExpectFault(Cause::kBusOff);
   EXPECT_LE(LastTorqueAfterFault_s(), kTwoTicks_s);
   EXPECT_EQ(counters_.bus_off, 1u);
 }
 
 TEST_F(BoardFaults, ARestartOfTheControllerEndsTheTorquesWithinTwoTicks) {
   RunWith([&](FaultyBus*) { interface_.InjectError(kRestarted); });
-  ExpectFault(FaultCause::kBusRestarted);
+  ExpectFault(Cause::kBusRestarted);
   EXPECT_LE(LastTorqueAfterFault_s(), kTwoTicks_s);
 }
 
 TEST_F(BoardFaults, ErrorPassiveIsCountedAndTheArmGoesOn) {
   RunWith([&](FaultyBus*) { interface_.InjectError(kTxPassive); });
-  EXPECT_EQ(node_->fault(), FaultCause::kNone);
+  EXPECT_EQ(node_->cause(), Cause::kNone);
   EXPECT_EQ(counters_.error_passive, 1u);
   EXPECT_GT(LastTorqueAfterFault_s(), 0.2);
 }
@@ -201,21 +202,21 @@ TEST_F(BoardFaults, ALinkThatGoesDownEndsTheTorquesForGood) {
     interface_.SetUp();
     StartWitness();
   });
-  ExpectFault(FaultCause::kBusDown);
+  ExpectFault(Cause::kBusDown);
   EXPECT_LE(LastTorqueAfterFault_s(), kTwoTicks_s) << "nothing old, and nothing new, after it is up again";
 }
 
 TEST_F(BoardFaults, AFullQueueEndsTheTorques) {
   RunWith([&](FaultyBus*) { interface_.Delay(200, 2); });
-  EXPECT_TRUE(node_->fault() == FaultCause::kTransmitStuck || node_->fault() == FaultCause::kFeedbackStale)
-      << NameOf(node_->fault());
+  EXPECT_TRUE(node_->cause() == Cause::kTorquesUnsent || node_->cause() == Cause::kFeedbackStale)
+      << NameOf(node_->cause());
   EXPECT_GT(counters_.dropped_queue_full + counters_.dropped_late, 0u);
   EXPECT_GT(report_.unsent_ticks, 0);
 }
 
 TEST_F(BoardFaults, ADriveThatFallsSilentIsMissedInTheNextTick) {
   RunWith([&](FaultyBus* drives) { drives->silent = true; });
-  ExpectFault(FaultCause::kFeedbackStale);
+  ExpectFault(Cause::kFeedbackStale);
   EXPECT_GE(report_.incomplete_samples, 2);
   EXPECT_LE(LastTorqueAfterFault_s(), scenario_.fleet.timing.feedback_stale_s + kTwoTicks_s);
 }

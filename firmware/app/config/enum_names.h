@@ -51,6 +51,11 @@ constexpr auto EnumNames(ObstacleKind) {
       {{kDisc, "disc"}, {kHalfPlane, "half_plane"}});
 }
 
+constexpr auto EnumNames(FleetStop) {
+  using enum FleetStop;
+  return std::to_array<std::pair<FleetStop, std::string_view>>({{kCarryOn, "carry_on"}, {kHold, "hold"}});
+}
+
 constexpr auto EnumNames(DriveProfile) {
   using enum DriveProfile;
   return std::to_array<std::pair<DriveProfile, std::string_view>>(

@@ -1,6 +1,8 @@
 #include "firmware/app/config/fleet_file.h"
 
+#include <bit>
 #include <ostream>
+#include <sstream>
 
 #include "firmware/app/config/fleet_layout.h"
 #include "firmware/app/config/fleet_rules.h"
@@ -8,6 +10,7 @@
 #include "firmware/app/config/parameter_reader.h"
 #include "firmware/app/config/toml_parser.h"
 #include "firmware/app/config/toml_writer.h"
+#include "firmware/app/digest.h"
 
 namespace armada {
 namespace {
@@ -76,6 +79,14 @@ std::optional<FleetConfig> LoadFleet(const std::string& path, const std::vector<
 void WriteFleet(const FleetConfig& fleet, std::ostream& out) {
   FleetLayout layout = LayoutOf(fleet);
   WriteToml(&layout, out);
+}
+
+int64_t FleetDigest(const FleetConfig& fleet) {
+  FleetConfig shared = fleet;
+  if (shared.link.has_key()) shared.link.key_file = "file";
+  std::ostringstream text;
+  WriteFleet(shared, text);
+  return std::bit_cast<int64_t>(Fnv1a(text.str()));
 }
 
 std::vector<EffectiveValue> EffectiveValues(const FleetConfig& fleet) {

@@ -33,6 +33,10 @@ std::optional<LoadedFleet> FleetFromTree(ConfigNode tree, const std::string& pat
 /// Writes a fleet file that reads back to the same values; every parameter is spelled out.
 void WriteFleet(const FleetConfig& fleet, std::ostream& out);
 
+/// What a fleet file says, as a number: boards whose numbers differ have different files. Where a board keeps
+/// its key is its own matter.
+int64_t FleetDigest(const FleetConfig& fleet);
+
 /// Every value of the fleet under its full key, defaults included.
 std::vector<EffectiveValue> EffectiveValues(const FleetConfig& fleet);
 

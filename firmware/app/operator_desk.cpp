@@ -1,0 +1,87 @@
+#include "firmware/app/operator_desk.h"
+
+#include "firmware/link/channels.h"
+
+namespace armada {
+namespace {
+
+constexpr int64_t kFreshNs = 1'000'000'000;
+
+bool IsSame(const reply_t& reply, const command_t& command) {
+  return reply.command_stamp_ns == command.stamp_ns && reply.command_sequence == command.sequence &&
+         reply.request == command.request;
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(int arm_id, const std::optional<LinkIdentity>& identity, int64_t fleet_digest)
+    : arm_id_(arm_id), fleet_digest_(fleet_digest) {
+  if (identity) seal_.emplace(identity->key, kOperatorSender);
+}
+
+void OperatorDesk::OnMessage(const LcmMessage& message) {
+  if (message.channel != kCommandChannel) return;
+  std::span<const uint8_t> payload = message.payload;
+  if (seal_) {
+    SealCheck seal = *seal_;
+    if (seal.Open(message.channel, &payload) != SealVerdict::kGenuine) {
+      ++rejected_;
+      return;
+    }
+  }
+  command_t command{};
+  if (!Decode(payload, &command)) {
+    ++rejected_;
+    return;
+  }
+  const bool estop = command.request == static_cast<int>(Request::kEstop);
+  if (command.arm_id != arm_id_ && !(command.arm_id == 0 && estop)) return;
+  if (IsSame(reply_, command)) {
+    reply_due_ = true;  // sent again: its reply was lost
+    if (!estop) return;
+  }
+  // An e-stop is not overtaken by anything.
+  const bool pending_estop = pending_ && pending_->request == static_cast<int>(Request::kEstop);
+  if (estop || !pending_estop) pending_ = command;
+}
+
+Request OperatorDesk::TakeRequest(int64_t tick_ns) {
+  if (!pending_) return Request::kNone;
+  const command_t& command = *pending_;
+  const auto request = static_cast<Request>(command.request);
+  refused_here_ = 0;
+  if (request != Request::kEstop) {
+    const int64_t age_ns = tick_ns - command.heard_stamp_ns;
+    // Estimates are stamped for the end of the tick in which they are made.
+    const bool fresh = age_ns < kFreshNs && age_ns > -kFreshNs && command.heard_stamp_ns > quoted_ns_;
+    if (!fresh) refused_here_ |= Bit(Refusal::kStale);
+    if (command.fleet_digest != fleet_digest_) refused_here_ |= Bit(Refusal::kFleetDiffers);
+    if (fresh) quoted_ns_ = command.heard_stamp_ns;
+  }
+  // A hold is not refused over a file.
+  if (request == Request::kHold) refused_here_ &= ~Bit(Refusal::kFleetDiffers);
+  return refused_here_ == 0 ? request : Request::kNone;
+}
+
+void OperatorDesk::Answer(Refusals refusals, ControllerState state, Cause cause) {
+  if (!pending_) return;
+  reply_.arm_id = static_cast<int8_t>(arm_id_);
+  reply_.request = pending_->request;
+  reply_.command_stamp_ns = pending_->stamp_ns;
+  reply_.command_sequence = pending_->sequence;
+  reply_.refusals = static_cast<int32_t>(refusals | refused_here_);
+  reply_.state = static_cast<int8_t>(state);
+  reply_.cause = static_cast<int8_t>(cause);
+  reply_due_ = true;
+  pending_.reset();
+}
+
+std::optional<reply_t> OperatorDesk::TakeReply(int64_t tick_ns) {
+  if (!reply_due_) return std::nullopt;
+  reply_due_ = false;
+  reply_.stamp_ns = tick_ns;
+  reply_.sequence = ++replies_;
+  return reply_;
+}
+
+}  // namespace armada

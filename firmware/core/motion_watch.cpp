@@ -1,0 +1,33 @@
+#include "firmware/core/motion_watch.h"
+
+namespace armada {
+
+CauseSet MotionWatch::Update(const MotionSeen& seen, double elapsed_s) {
+  const bool near = seen.follows && seen.synced && seen.error_m < config_.following_error_m;
+  near_s_ = near ? near_s_ + elapsed_s : 0.0;
+  following_ = seen.follows && (following_ || near_s_ > config_.following_s);
+  const bool singular = following_ && seen.sigma_min < config_.sigma_min;
+  singular_s_ = singular ? singular_s_ + elapsed_s : 0.0;
+  // A subtask may take all the torque that there is, as long as the task does not suffer.
+  const bool too_weak = following_ && seen.saturated && seen.error_m > config_.following_error_m;
+  saturated_s_ = too_weak ? saturated_s_ + elapsed_s : 0.0;
+
+  CauseSet causes;
+  causes.Set(Cause::kSingular, singular_s_ > config_.sigma_min_s);
+  causes.Set(Cause::kSaturated, saturated_s_ > config_.saturated_max_s);
+  causes.Set(Cause::kJointLimit, CrossesALimit(seen.q_rad));
+  return causes;
+}
+
+// An arm may start beyond a limit, and come back.
+bool MotionWatch::CrossesALimit(const JointVector& q_rad) {
+  if (arm_.q_min_rad.size() == 0) return false;
+  const double margin_rad = config_.joint_limit_margin_rad;
+  const bool within = (q_rad.array() >= arm_.q_min_rad.array() - margin_rad).all() &&
+                      (q_rad.array() <= arm_.q_max_rad.array() + margin_rad).all();
+  const bool crosses = was_within_limits_ && !within;
+  was_within_limits_ = within;
+  return crosses;
+}
+
+}  // namespace armada

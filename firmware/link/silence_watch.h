@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+namespace armada {
+
+/// Tells a sender that has died from one whose messages get lost now and then: silence counts once it is
+/// longer than the losses of this very link make likely.
+class SilenceWatch {
+ public:
+  struct Config {
+    int messages = 8;
+    double chance = 1e-9;
+
+    template <class Visitor>
+    void Visit(Visitor& parameter) {
+      parameter({"messages", "", 2, 1000,
+                 "messages of a sender that have to be missing before it counts as silent, on a link without "
+                 "losses"},
+                messages);
+      parameter({"chance", "", 1e-15, 0.1,
+                 "and as many more as it takes for its losses to explain that with less than this chance"},
+                chance);
+    }
+  };
+
+  explicit SilenceWatch(const Config& config) : config_(config), allowed_(config.messages) {}
+
+  /// A message that was taken as new. Its sequence and stamp are the sender's, of which the differences tell
+  /// what was lost and how often it sends.
+  void OnMessage(int64_t sequence, int64_t stamp_ns, int64_t arrival_ns);
+
+  bool IsSilent(int64_t now_ns) const {
+    return heard_ && period_s_ > 0.0 &&
+           1e-9 * static_cast<double>(now_ns - arrival_ns_) > allowed_ * period_s_;
+  }
+
+ private:
+  Config config_;
+  bool heard_ = false;
+  int64_t sequence_ = 0;
+  int64_t stamp_ns_ = 0;
+  int64_t arrival_ns_ = 0;
+  double period_s_ = 0.0;  ///< of the sender; 0 until two messages have come
+  double loss_ = 0.0;      ///< share of messages lost, of late
+  double allowed_;         ///< missing messages that are not yet silence
+};
+
+}  // namespace armada

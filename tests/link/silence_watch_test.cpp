@@ -1,0 +1,52 @@
+#include "firmware/link/silence_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace armada {
+namespace {
+
+constexpr int64_t kPeriodNs = 10'000'000;
+
+TEST(SilenceWatch, ASenderWithoutLossesIsMissedAfterAFewMessages) {
+  SilenceWatch watch{SilenceWatch::Config()};
+  EXPECT_FALSE(watch.IsSilent(0)) << "it was never heard";
+  for (int64_t k = 1; k <= 100; ++k) {
+    watch.OnMessage(k, k * kPeriodNs, k * kPeriodNs);
+    ASSERT_FALSE(watch.IsSilent((k + 1) * kPeriodNs));
+  }
+  EXPECT_FALSE(watch.IsSilent(108 * kPeriodNs));
+  EXPECT_TRUE(watch.IsSilent(109 * kPeriodNs));
+}
+
+TEST(SilenceWatch, ASlowSenderHasItsOwnTime) {
+  SilenceWatch watch{SilenceWatch::Config()};
+  for (int64_t k = 1; k <= 10; ++k) watch.OnMessage(k, 10 * k * kPeriodNs, 10 * k * kPeriodNs);
+  EXPECT_FALSE(watch.IsSilent(175 * kPeriodNs));
+  EXPECT_TRUE(watch.IsSilent(185 * kPeriodNs));
+}
+
+TEST(SilenceWatch, LossesAreNotTakenForDeathAndDeathIsNoticedAllTheSame) {
+  std::mt19937 random(1);
+  for (const double loss : {0.05, 0.3, 0.5}) {
+    SilenceWatch watch{SilenceWatch::Config()};
+    int alarms = 0;
+    int64_t longest = 0;
+    int64_t last = 0;
+    constexpr int64_t kMessages = 1'000'000;
+    for (int64_t k = 1; k <= kMessages; ++k) {
+      alarms += watch.IsSilent(k * kPeriodNs);
+      if (k > 1 && std::bernoulli_distribution(loss)(random)) continue;
+      longest = std::max(longest, k - last);
+      last = k;
+      watch.OnMessage(k, k * kPeriodNs, k * kPeriodNs);
+    }
+    EXPECT_LE(alarms, 3) << "loss " << loss << ", longest gap " << longest;
+    EXPECT_TRUE(watch.IsSilent((kMessages + 45) * kPeriodNs)) << "loss " << loss;
+  }
+}
+
+}  // namespace
+}  // namespace armada
