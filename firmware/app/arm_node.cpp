@@ -117,8 +117,7 @@ void ArmNode::ReadJoints(int64_t tick_ns, FrameList* out) {
   const bool idle = state() == ControllerState::kInit || state() == ControllerState::kMonitor;
   input_.drives_enabled = joints_.AllInTorqueMode();
   if (idle && !input_.drives_enabled) input_.drives_ready = joints_.Prepare(tick_ns, out);
-  joints_.ReadAt(tick_ns, epoch_ns_, controller_.status().tau_Nm, state() == ControllerState::kArming,
-                 &input_);
+  joints_.ReadAt(tick_ns, epoch_ns_, controller_.status().tau_Nm, &input_);
   input_.causes.Set(Cause::kDriveLeftTorque, joints_.AnyLeft());
 }
 

@@ -28,7 +28,8 @@ JointSet::JointSet(const FleetConfig& fleet, size_t arm)
       drives_(MakeDrives(fleet.arms[arm].joints)),
       believed_(drives_.size()),
       was_in_torque_(drives_.size(), false),
-      prepared_(drives_.size(), false) {
+      prepared_(drives_.size(), false),
+      asked_(drives_.size(), false) {
   const SensorConfig sensor = fleet.ControllerConfig(arm).control.sensor;
   for (size_t i = 0; i < drives_.size(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
@@ -91,7 +92,8 @@ void JointSet::RequestSamples(int64_t now_ns, ControllerState state, FrameList* 
   for (size_t i = 0; i < drives_.size(); ++i) {
     sequence_at_request_[i] = drives_[i]->sample().sequence;
     const bool idle = state == ControllerState::kFault || (state != ControllerState::kArming && prepared_[i]);
-    if (idle || IsInTorqueMode(*drives_[i])) drives_[i]->RequestSample(now_ns, out);
+    asked_[i] = idle || IsInTorqueMode(*drives_[i]);
+    if (asked_[i]) drives_[i]->RequestSample(now_ns, out);
   }
 }
 
@@ -124,8 +126,7 @@ bool JointSet::IsBelievable(size_t joint, const JointSample& sample) {
          kBelievableSpeeds * supervisor_.speed_max_rad_s * since_s;
 }
 
-void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent_Nm, bool enabling,
-                      ArmInput* input) {
+void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent_Nm, ArmInput* input) {
   // A drive samples between the request and the answer's arrival.
   int64_t sum_ns = 0;
   int fresh = 0;
@@ -151,7 +152,7 @@ void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent
     const bool in_torque = IsInTorqueMode(*drives_[i]);
     was_in_torque_[i] = was_in_torque_[i] || in_torque;
     all_good = all_good && is_fresh;
-    const bool braked = enabling && !in_torque;
+    const bool braked = !asked_[i];
     const bool stale = sample.sequence == 0 || (age_s > timing_.feedback_stale_s && !braked);
     if (stale) {
       input->samples_valid = false;

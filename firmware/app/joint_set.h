@@ -39,8 +39,8 @@ class JointSet {
 
   /// q and dq at one instant from samples of slightly different ones, missing ones predicted, with the
   /// instant; what is wrong with them; and whether they can be used. `sent_Nm` is the torque sent last.
-  /// While drives are being enabled those that are not yet stand on their brakes: their samples may be old.
-  void ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent_Nm, bool enabling, ArmInput* input);
+  /// A joint whose drive was not asked, for it is being enabled, stands on its brake: its sample may be old.
+  void ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent_Nm, ArmInput* input);
 
   /// To those in torque mode.
   void CommandTorques(const JointVector& tau_Nm, FrameList* out);
@@ -61,6 +61,7 @@ class JointSet {
   std::vector<JointSample> believed_;  ///< the last one of each joint
   std::vector<bool> was_in_torque_;
   std::vector<bool> prepared_;
+  std::vector<bool> asked_;  ///< for a sample, in this tick
   int64_t request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
   bool nonsense_since_complete_ = false;

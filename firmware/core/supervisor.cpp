@@ -54,7 +54,9 @@ CauseSet Supervisor::Active(const SupervisorInput& in) const {
   return active;
 }
 
+// What is so already is not refused.
 Refusals Supervisor::Judge(const SupervisorInput& in) const {
+  using enum ControllerState;
   Refusals refusals = 0;
   const auto refuse_unless = [&](bool condition, Refusal refusal) {
     if (!condition) refusals |= Bit(refusal);
@@ -65,24 +67,27 @@ Refusals Supervisor::Judge(const SupervisorInput& in) const {
     case Request::kEstop:
       break;
     case Request::kArm:
-      refuse_unless(state_ == ControllerState::kMonitor, Refusal::kState);
+      if (state_ == kArming || state_ == kHold || Follows(state_)) break;
+      if (state_ != kMonitor) return Bit(Refusal::kState);
       refuse_unless(in.drives_ready, Refusal::kDrives);
       refuse_unless(in.samples_good, Refusal::kSamples);
       refuse_unless(at_rest, Refusal::kMoving);
       refuse_unless(in.causes.empty(), Refusal::kCauseActive);
       break;
     case Request::kStart:
-      refuse_unless(state_ == ControllerState::kHold, Refusal::kState);
+      if (Follows(state_)) break;
+      if (state_ != kHold) return Bit(Refusal::kState);
       refuse_unless(in.neighbours_good, Refusal::kNeighbours);
       refuse_unless(in.synced, Refusal::kNotSynced);
       refuse_unless(clear_s_ > config_.hold_clear_s - kGrain_s, Refusal::kCauseActive);
       break;
     case Request::kHold:
-      refuse_unless(Follows(state_) || state_ == ControllerState::kHold, Refusal::kState);
+      refuse_unless(Follows(state_) || state_ == kHold, Refusal::kState);
       break;
     case Request::kReset:
-      refuse_unless(state_ == ControllerState::kHold || state_ == ControllerState::kFault, Refusal::kState);
-      refuse_unless(state_ != ControllerState::kHold || at_rest, Refusal::kMoving);
+      if (state_ == kInit || state_ == kMonitor) break;
+      if (state_ != kHold && state_ != kFault) return Bit(Refusal::kState);
+      refuse_unless(state_ != kHold || at_rest, Refusal::kMoving);
       break;
   }
   return refusals;

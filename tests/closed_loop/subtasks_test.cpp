@@ -48,7 +48,12 @@ TEST(ObstaclesScenario, LinksKeepClearAndJointsWithinLimits) {
 }
 
 TEST(ObstaclesScenario, WithoutAvoidanceTheSameArmsRunIntoThem) {
-  const RunMetrics metrics = Simulate("obstacles", 1, {"arm.*.control.subtask.avoidance.enabled=false"});
+  const std::string off = "arm.*.control.subtask.avoidance.enabled=false";
+  const RunMetrics stopped = Simulate("obstacles", 1, {off});
+  EXPECT_EQ(ArmOf(stopped, 2).faults, std::vector<std::string>{"joint limit crossed"});
+
+  const RunMetrics metrics =
+      Simulate("obstacles", 1, {off, "arm.*.control.supervisor.joint_limit_margin_rad=10"});
   EXPECT_TRUE(metrics.ok) << "the maintask does not know";
   for (const int id : {1, 3}) EXPECT_LT(ArmOf(metrics, id).clearance->min_m, -0.1) << "arm " << id;
   EXPECT_LT(ArmOf(metrics, 2).limits->margin_min_rad, -0.1);

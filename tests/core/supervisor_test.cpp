@@ -190,16 +190,30 @@ TEST_F(Supervised, RefusesWithEveryReason) {
   Step(alone);
   EXPECT_EQ(supervisor_.refusals(),
             Bit(Refusal::kNeighbours) | Bit(Refusal::kNotSynced) | Bit(Refusal::kCauseActive));
-  for (const Request request : {Request::kStart, Request::kHold, Request::kReset}) {
-    Reach(State::kMonitor);
+  const auto refuses = [&](State state, Request request) {
+    Reach(state);
     Step(Asking(request));
-    EXPECT_NE(supervisor_.refusals() & Bit(Refusal::kState), 0u) << NameOf(request);
-  }
-  Reach(State::kRun);
-  for (const Request request : {Request::kArm, Request::kStart, Request::kReset}) {
-    Step(Asking(request));
-    EXPECT_NE(supervisor_.refusals() & Bit(Refusal::kState), 0u) << NameOf(request);
-    EXPECT_EQ(supervisor_.state(), State::kRun);
+    return supervisor_.refusals() == Bit(Refusal::kState);
+  };
+  for (const Request request : {Request::kStart, Request::kHold})
+    EXPECT_TRUE(refuses(State::kMonitor, request)) << NameOf(request);
+  EXPECT_TRUE(refuses(State::kRun, Request::kReset));
+  for (const Request request : {Request::kArm, Request::kStart, Request::kHold})
+    EXPECT_TRUE(refuses(State::kFault, request)) << NameOf(request);
+}
+
+TEST_F(Supervised, WhatIsSoAlreadyIsNotRefusedAndChangesNothing) {
+  const std::vector<std::pair<State, Request>> already = {
+      {State::kArming, Request::kArm},    {State::kHold, Request::kArm},      {State::kRun, Request::kArm},
+      {State::kRun, Request::kStart},     {State::kHold, Request::kHold},     {State::kInit, Request::kReset},
+      {State::kMonitor, Request::kReset}, {State::kDegraded, Request::kStart}};
+  for (const auto& [state, request] : already) {
+    Reach(state);
+    SupervisorInput in = Asking(request);
+    in.drives_enabled = in.drives_ready && GivesTorque(state) && state != State::kArming;
+    in.drives_ready = state != State::kInit;
+    EXPECT_EQ(Step(in), state) << NameOf(state) << ", " << NameOf(request);
+    EXPECT_EQ(supervisor_.refusals(), 0u) << NameOf(state) << ", " << NameOf(request);
   }
 }
 

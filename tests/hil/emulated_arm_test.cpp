@@ -223,9 +223,12 @@ TEST(EmulatedArm, SilenceDisarmsTheDriveAtItsWatchdogsTime) {
   Bench bench(scenario, {}, 0.0);
   bench.EnableAll(0.0);
   bench.Torque(0.01, 0, 8.0f);
-  bench.AdvanceTo(0.2);
+  bench.AdvanceTo(0.1);
   EXPECT_EQ(bench.arm().Torque()[0], 0.0);
   EXPECT_NEAR(bench.arm().plant().dq_rad_s[0], 4.0 * 0.03, 1e-8);
+  bench.AdvanceTo(0.2);
+  EXPECT_EQ(bench.arm().plant().dq_rad_s[0], 0.0) << "with all drives off the brakes close";
+  EXPECT_FALSE(bench.arm().released());
 }
 
 // Times that are not multiples of anything, ends of holds, drives' events and tiny steps: time must always

@@ -22,10 +22,14 @@ source, work = map(pathlib.Path, sys.argv[1:])
 fleet = (source / "firmware/fleets/paper.toml").read_text()
 head, *arms = re.split(r"(?m)^(?=\[\[arm\]\])", fleet.split("[[graph]]")[0])
 head = re.sub(r"(?m)^\[link\]$", '[link]\nkey_file = "fleet.key"', head)
+# Patient, for a machine that may stall: no drive or sample is given up within 0.4 s.
+head = re.sub(r"(?m)^\[timing\]$", "[timing]\nfeedback_stale_s = 0.4", head)
+arms = [re.sub(r"(?m)^(id = .*)$", r"\1\nwatchdog_s = 0.5", arm) for arm in arms]
 (work / "fleet.toml").write_text(head + "".join(arms[:2]) +
                                  "[[graph]]\npins = [1]\nedges = [{ from = 1, to = 2 }]\n")
 benign = (source / "hil/scenarios/benign.toml").read_text()
 benign = re.sub(r'(?m)^fleet = .*$', 'fleet = "fleet.toml"', benign)
+benign = re.sub(r"(?m)^\[drive\]$", "[drive]\nwatchdog_s = 0.5", benign)
 (work / "scenario.toml").write_text(re.sub(r"(?m)^seconds = .*$", "seconds = 200.0", benign))
 END
 export ARMADA_FLEET=$work/fleet.toml
@@ -55,8 +59,10 @@ start_board 1
 start_board 2
 
 # Arms come up in MONITOR, and refuse what is not their turn.
+until_ok "$armada" ctl reset
+expect 1 'arm 1: refused: not possible in this state \((INIT|MONITOR)\)' "$armada" ctl start
 until_ok "$armada" ctl arm
-expect 1 'arm 2: refused: not possible in this state .*(HOLD)' "$armada" ctl arm
+expect 0 'arm 2: HOLD' "$armada" ctl arm
 until_ok "$armada" ctl start
 grep -q 'arm 1: RUN' "$work/out" && grep -q 'arm 2: RUN' "$work/out" || fail "not running: $(cat "$work/out")"
 expect 0 'arm 2: HOLD' "$armada" ctl hold --arm 2
@@ -77,8 +83,8 @@ expect 1 'the fleet file is another one on this board' "$armada" ctl start --fle
 # A board that is killed and started anew while its arm moves comes up in MONITOR and stays there.
 kill -KILL "${pids[2]}"
 start_board 1
-until_ok grep -q . <("$armada" ctl start --arm 1 --timeout 1 | grep MONITOR)
-sleep 1
+until_ok "$armada" ctl reset --arm 1
+sleep 2
 expect 1 'arm 1: refused: not possible in this state.*\((INIT|MONITOR)' "$armada" ctl start --arm 1
 
 # An e-stop needs no state; then only a reset helps.

@@ -188,9 +188,10 @@ TEST_F(BoardFaults, ARestartOfTheControllerEndsTheTorquesWithinTwoTicks) {
   EXPECT_LE(LastTorqueAfterFault_s(), kTwoTicks_s);
 }
 
-TEST_F(BoardFaults, ErrorPassiveIsCountedAndTheArmGoesOn) {
+TEST_F(BoardFaults, ErrorPassiveIsCountedAndTheArmGoesOnDegraded) {
   RunWith([&](FaultyBus*) { interface_.InjectError(kTxPassive); });
-  EXPECT_EQ(node_->cause(), Cause::kNone);
+  EXPECT_EQ(node_->state(), ControllerState::kDegraded);
+  EXPECT_EQ(node_->cause(), Cause::kErrorPassive);
   EXPECT_EQ(counters_.error_passive, 1u);
   EXPECT_GT(LastTorqueAfterFault_s(), 0.2);
 }
@@ -208,6 +209,7 @@ TEST_F(BoardFaults, ALinkThatGoesDownEndsTheTorquesForGood) {
 
 TEST_F(BoardFaults, AFullQueueEndsTheTorques) {
   RunWith([&](FaultyBus*) { interface_.Delay(200, 2); });
+  EXPECT_TRUE(node_->state() == ControllerState::kFault || node_->state() == ControllerState::kSafeStop);
   EXPECT_TRUE(node_->cause() == Cause::kTorquesUnsent || node_->cause() == Cause::kFeedbackStale)
       << NameOf(node_->cause());
   EXPECT_GT(counters_.dropped_queue_full + counters_.dropped_late, 0u);

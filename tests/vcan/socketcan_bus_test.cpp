@@ -120,12 +120,13 @@ TEST_F(SocketCan, ChangesOfTheControllersStateAreValues) {
     return bus->Receive(In(1000 * kMs), &frame);
   };
   EXPECT_EQ(hear(kTxPassive), BusStatus::kErrorPassive);
+  EXPECT_EQ(hear(kTxWarning), BusStatus::kErrorActive);
   EXPECT_EQ(hear(kBusOff), BusStatus::kBusOff);
   EXPECT_EQ(hear(kRestarted), BusStatus::kRestarted);
   EXPECT_EQ(hear(kLostArbitration), BusStatus::kOk);
   EXPECT_TRUE(frame.error);
   const BusCounters& counters = bus->counters();
-  EXPECT_EQ(counters.errors, 4u);
+  EXPECT_EQ(counters.errors, 5u);
   EXPECT_EQ(counters.error_passive, 1u);
   EXPECT_EQ(counters.bus_off, 1u);
   EXPECT_EQ(counters.restarts, 1u);

@@ -35,6 +35,7 @@ class VcanInterface {
 inline constexpr char kBusOff[] = "20000040#0000000000000000";
 inline constexpr char kRestarted[] = "20000100#0000000000000000";
 inline constexpr char kTxPassive[] = "20000004#0020000000000000";
+inline constexpr char kTxWarning[] = "20000004#0008000000000000";  // from passive: better
 inline constexpr char kLostArbitration[] = "20000002#0000000000000000";
 
 }  // namespace armada
