@@ -91,8 +91,8 @@ void JointSet::RequestSamples(int64_t now_ns, ControllerState state, FrameList* 
   request_ns_ = now_ns;
   for (size_t i = 0; i < drives_.size(); ++i) {
     sequence_at_request_[i] = drives_[i]->sample().sequence;
-    const bool idle = state == ControllerState::kFault || (state != ControllerState::kArming && prepared_[i]);
-    asked_[i] = idle || IsInTorqueMode(*drives_[i]);
+    const bool others = state <= ControllerState::kMonitor ? prepared_[i] : state != ControllerState::kArming;
+    asked_[i] = others || IsInTorqueMode(*drives_[i]);
     if (asked_[i]) drives_[i]->RequestSample(now_ns, out);
   }
 }
