@@ -180,8 +180,8 @@ TEST(PostureOfArm6, ArrivesWhereverTheSelfMotionAdmitsItsGoalForTheWholeLap) {
     const Lap lap = RunLap(loop, subtask, random);
     (lap.admitted ? admitted : refused) += 1;
     EXPECT_EQ(lap.worst_rad < 0.03, lap.admitted)
-        << "joint " << subtask.joint << " to " << subtask.goal_rad << ": " << lap.worst_rad << " rad, " << NameOf(loop.controller().state()) << " "
-        << NameOf(loop.controller().supervisor().cause());
+        << "joint " << subtask.joint << " to " << subtask.goal_rad << ": " << lap.worst_rad << " rad, "
+        << NameOf(loop.controller().state()) << " " << NameOf(loop.controller().supervisor().cause());
   }
   EXPECT_GT(admitted, 20);
   EXPECT_GT(refused, 20);
