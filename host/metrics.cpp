@@ -79,6 +79,7 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
   ok = !arms.empty();
   for (ArmMetrics& arm : arms) {
     arm.standing = criterion.Stands(arm.id);
+    if (criterion.Excuses(arm.id)) continue;
     if (arm.standing) {
       if (!(arm.joint_speed_max_rad_s < criterion.standing_speed_max_rad_s)) ok = false;
     } else {

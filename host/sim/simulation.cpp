@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "firmware/app/initial_state.h"
+#include "hil/random.h"
 #include "host/floor/floor.h"
+#include "host/sim/link_faults.h"
 
 namespace armada {
 namespace {
@@ -24,6 +26,18 @@ JointVector JointsOf(const PlanarPlant& plant) {
   return Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
 }
 
+// Instants closer together than this are one.
+constexpr double kSameInstant_s = 1e-9;
+
+/// A key as secret as the seed: what is tried here is the check of the seals, not the key.
+LinkIdentity IdentityOf(uint64_t seed) {
+  LinkIdentity identity{.key = {}, .epoch = 1};
+  for (size_t i = 0; i < identity.key.size(); ++i) {
+    identity.key[i] = static_cast<uint8_t>(RandomBits(seed, kFaultStream, i));
+  }
+  return identity;
+}
+
 double Rms(double sum_squares, int64_t count) {
   return count > 0 ? std::sqrt(sum_squares / static_cast<double>(count)) : 0.0;
 }
@@ -38,17 +52,32 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
       epoch_ns_(1'000'000'000),
       network_(scenario_, seed) {
   if (scenario_.leader.kind != LeaderKind::kNone) leader_.emplace(scenario_.leader);
+  if (NeedsSeals(scenario_.faults)) {
+    identity_ = IdentityOf(seed);
+    leader_sealer_.emplace(*identity_, kLeaderSender);
+  }
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
   arms_.reserve(scenario_.fleet.arms.size());
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, seed, leader);
     arms_.push_back(
-        Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_),
+        Arm{.node = MakeNode(i, epoch_ns_, 1),
             .bench = EmulatedArm(scenario_, i, seed, start, leader, -scenario_.fleet.timing.bring_up_s),
+            .faults = BoardFaults(scenario_.faults, scenario_.fleet.arms[i].id),
             .record = TrackingRecord(scenario_),
             .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
-            .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
+            .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta(),
+            .open = std::nullopt});
   }
+}
+
+// Started anew, a controller has forgotten all: it begins as at its first start.
+ArmNode Simulation::MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const {
+  const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
+  std::optional<LinkIdentity> identity = identity_;
+  if (identity) identity->epoch = starts;
+  return ArmNode(scenario_.fleet, index, DrawStart(scenario_, index, seed_, leader).controller, epoch_ns,
+                 identity);
 }
 
 RunMetrics Simulation::Run(TraceWriter* trace) {
@@ -96,20 +125,32 @@ void Simulation::Exchange(int64_t k) {
     // The newest state on the leader's own grid.
     const double rate_hz = scenario_.leader.rate_hz;
     const double t_s = std::floor(TimeOf(k) * rate_hz + 1e-6) / rate_hz;
-    if (leader_sequence_ > 0 && t_s == leader_sent_s_) {
+    const bool silent = FindActive(scenario_.faults, FaultKind::kLeaderDies, 0, TimeOf(k)) != nullptr ||
+                        FindActive(scenario_.faults, FaultKind::kLeaderStops, 0, TimeOf(k)) != nullptr;
+    if (silent || (leader_sequence_ > 0 && t_s == leader_sent_s_)) {
       network_.Send(0, k, {});  // nothing new from a leader slower than the ticks
     } else {
       SendLeader(k, t_s);
     }
   }
   for (size_t i = 0; i < arms_.size(); ++i) {
-    network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
+    if (IsOnTime(arms_[i], k)) {
+      network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
+    } else {
+      network_.Send(i + 1, k, {});
+    }
   }
 }
 
 void Simulation::SendLeader(int64_t k, double t_s) {
   leader_sent_s_ = t_s;
-  const Zeta zeta = leader_->At(t_s);
+  Zeta zeta = leader_->At(t_s);
+  if (const auto* const jump = FindActive(scenario_.faults, FaultKind::kLeaderJumps, 0, TimeOf(k))) {
+    zeta.x_m.array() += jump->value;
+  }
+  if (FindActive(scenario_.faults, FaultKind::kLeaderNonfinite, 0, TimeOf(k)) != nullptr) {
+    zeta.x_m.setConstant(std::nan(""));
+  }
   leader_t message{};
   message.stamp_ns = epoch_ns_ + std::llround(t_s * 1e9);
   message.sequence = ++leader_sequence_;
@@ -119,22 +160,112 @@ void Simulation::SendLeader(int64_t k, double t_s) {
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
   Copy(leader_->Jerk(t_s), message.jerk_m_s3);
-  network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
+  MessageBuffer* const buffer = network_.BufferFor(0, k);
+  network_.Send(0, k, SealIfKeyed(leader_sealer_, kLeaderChannel, Encode(message, buffer), buffer));
 }
 
-// One tick of one board, in the order of the real process.
+// One tick of one board, in the order of the real process. Without faults it is over within an instant.
 void Simulation::Control(Arm& arm, size_t index, int64_t k) {
+  if (!BeginsTick(arm, index, k)) return;
   const int64_t tick_ns = NanosecondsOf(k);
   arm.node.RequestSamples(tick_ns, &to_drives_);
   ToDrives(arm, TimeOf(k));
   ToBoard(arm, tick_ns);
   network_.Deliver(index, k, tick_ns, &arm.node);
-  arm.node.Step(tick_ns, &to_drives_);
-  ToDrives(arm, TimeOf(k));
-  ToBoard(arm, tick_ns);
+  if (scenario_.faults.empty()) return Answer(arm, k, TimeOf(k));
+  arm.open = {k, TimeOf(k) + scenario_.fleet.timing.feedback_timeout_s, std::nullopt};
+  Continue(arm, TimeOf(k));
+}
+
+bool Simulation::BeginsTick(Arm& arm, size_t index, int64_t k) {
+  if (scenario_.faults.empty()) return true;
+  if (arm.faults.Kills(TimeOf(k))) {
+    arm.killed = true;
+    arm.open.reset();
+    return false;
+  }
+  if (arm.killed || (k == arm.first_tick && !arm.ready)) Start(arm, index, k);
+  const bool stopped = arm.faults.Stops(TimeOf(k));
+  const bool late = arm.open.has_value();
+  if (!stopped && !late && k >= arm.first_tick) return true;
+  network_.Deliver(index, k, NanosecondsOf(k), &arm.node);  // its socket keeps them
+  if (stopped || late) {
+    ++arm.missed_ticks;
+  } else {
+    arm.ready = arm.node.BringUp(NanosecondsOf(k), &to_drives_);
+    ToDrives(arm, TimeOf(k));
+    ToBoard(arm, NanosecondsOf(k));
+  }
+  return false;
+}
+
+bool Simulation::IsOnTime(const Arm& arm, int64_t k) const {
+  return !arm.killed && !arm.open && k >= arm.first_tick && !arm.faults.Kills(TimeOf(k)) &&
+         !arm.faults.Stops(TimeOf(k));
+}
+
+// As a service that is restarted: its time 0 comes when its drives have had their time to come up.
+void Simulation::Start(Arm& arm, size_t index, int64_t k) {
+  arm.killed = false;
+  arm.ready = false;
+  arm.first_tick = k + std::llround(scenario_.fleet.timing.bring_up_s / period_s_);
+  arm.node = MakeNode(index, NanosecondsOf(arm.first_tick), ++arm.starts);
+}
+
+void Simulation::Continue(Arm& arm, double t_s) {
+  OpenTick& open = *arm.open;
+  if (!open.answer_s && (arm.node.SamplesComplete() || t_s >= open.samples_by_s - kSameInstant_s)) {
+    open.answer_s = t_s + arm.faults.ComputeTime_s(t_s);
+  }
+  if (!open.answer_s || t_s < *open.answer_s - kSameInstant_s) return;
+  const int64_t k = open.k;
+  arm.open.reset();
+  Answer(arm, k, t_s);
+}
+
+void Simulation::Answer(Arm& arm, int64_t k, double t_s) {
+  arm.node.Step(NanosecondsOf(k), &to_drives_);
+  TellBus(arm, arm.faults.BusAt(t_s, period_s_));
+  if (arm.faults.RefusesTorques(t_s)) {
+    TellBus(arm, BusStatus::kQueueFull);
+    to_drives_.Clear();
+  } else {
+    arm.unsent_in_a_row = 0;
+  }
+  arm.missed_ticks = 0;
+  arm.answered_tick = k;
+  ToDrives(arm, t_s);
+  ToBoard(arm, NanosecondsOf(k) + std::llround((t_s - TimeOf(k)) * 1e9));
   for (const double tau_Nm : arm.node.controller().status().tau_Nm) {
     arm.torque_max_Nm = std::max(arm.torque_max_Nm, std::abs(tau_Nm));
   }
+}
+
+// As the process does in such a tick: no torque any more.
+void Simulation::TellBus(Arm& arm, BusStatus status) {
+  FaultCause cause = FaultCause::kNone;
+  switch (status) {
+    case BusStatus::kOk:
+    case BusStatus::kTimeout:
+    case BusStatus::kErrorPassive:
+      return;
+    case BusStatus::kQueueFull:
+      if (++arm.unsent_in_a_row < scenario_.fleet.timing.transmit_failures_max) return;
+      cause = FaultCause::kTransmitStuck;
+      break;
+    case BusStatus::kBusOff:
+      cause = FaultCause::kBusOff;
+      break;
+    case BusStatus::kRestarted:
+      cause = FaultCause::kBusRestarted;
+      break;
+    case BusStatus::kDown:
+      cause = FaultCause::kBusDown;
+      break;
+  }
+  if (arm.node.fault() != FaultCause::kNone) return;
+  to_drives_.Clear();
+  arm.node.Fail(cause, &to_drives_);
 }
 
 TaskVector Simulation::Target(double t_s) const {
@@ -156,16 +287,17 @@ void Simulation::Observe(int64_t k) {
                                     TaskVector::Zero(PlanarArm::kTaskDim)};
   for (size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
-    const Zeta& zeta = arm.node.controller().zeta();
-    arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
-    arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
-    arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
-    arm.estimator_max.Update(zeta, truth);
     const PlanarPlant& plant = arm.bench.plant();
     for (int joint = 0; joint < plant.dof(); ++joint) {
       arm.joint_speed_max_rad_s =
           std::max(arm.joint_speed_max_rad_s, std::abs(plant.dq_rad_s[static_cast<size_t>(joint)]));
     }
+    if (arm.answered_tick != k) continue;  // what it knew is of an earlier tick
+    const Zeta& zeta = arm.node.controller().zeta();
+    arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
+    arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
+    arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
+    arm.estimator_max.Update(zeta, truth);
     for (size_t j = 0; j < i; ++j) {
       estimate_spread_m_ =
           std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
@@ -211,6 +343,7 @@ void Simulation::AdvancePlants(int64_t k) {
     for (Arm& arm : arms_) {
       arm.bench.AdvanceTo(t_s, &to_board_);
       ToBoard(arm, epoch_ns_ + std::llround(t_s * 1e9));
+      if (arm.open && !arm.faults.Kills(t_s) && !arm.faults.Stops(t_s)) Continue(arm, t_s);
       arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
     }
   }
@@ -220,8 +353,9 @@ bool Simulation::WriteLearned(const std::string& folder, std::string* error) con
   for (size_t i = 0; i < arms_.size(); ++i) {
     const ArmNode& node = arms_[i].node;
     const ArmEntry& entry = scenario_.fleet.arms[i];
-    if (node.fault() == FaultCause::kNone && !WriteInitialState(WarmStart(entry, node.controller()), entry,
-                                                                LearnedFile(folder, entry.id), error)) {
+    if (!arms_[i].killed && node.fault() == FaultCause::kNone &&
+        !WriteInitialState(WarmStart(entry, node.controller()), entry, LearnedFile(folder, entry.id),
+                           error)) {
       return false;
     }
   }

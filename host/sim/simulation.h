@@ -6,6 +6,7 @@
 #include "firmware/app/arm_node.h"
 #include "hil/emulated_arm.h"
 #include "hil/tracking_record.h"
+#include "host/sim/board_faults.h"
 #include "host/sim/trace_writer.h"
 #include "host/sim/virtual_network.h"
 #include "host/subtask_record.h"
@@ -13,7 +14,8 @@
 namespace armada {
 
 /// A scenario in virtual time and in one thread: every arm's whole ArmNode with its drive and message codecs,
-/// its emulated bench, and the network between. The same scenario and seed give the same bytes.
+/// its emulated bench, and the network between, with the scenario's faults in all of them. The same scenario
+/// and seed give the same bytes.
 class Simulation {
  public:
   Simulation(const ScenarioConfig& scenario, uint64_t seed);
@@ -26,9 +28,16 @@ class Simulation {
   bool WriteLearned(const std::string& folder, std::string* error) const;
 
  private:
+  /// A tick that waits for samples, or in which the board still computes.
+  struct OpenTick {
+    int64_t k;
+    double samples_by_s;
+    std::optional<double> answer_s;  ///< once it has the samples, or does without
+  };
   struct Arm {
     ArmNode node;
     EmulatedArm bench;
+    BoardFaults faults;
     TrackingRecord record;
     SubtaskRecord subtask_record;
     ParameterVector theta;  ///< true parameters
@@ -38,12 +47,30 @@ class Simulation {
     int64_t window_ticks = 0;
     double torque_max_Nm = 0.0;
     JointVector floor_posture_rad{};
+    bool killed = false;         ///< no controller is left in `node`
+    uint64_t starts = 1;         ///< of the controller
+    bool ready = true;           ///< its drives were in torque mode in the last tick of the bring-up
+    int64_t first_tick = 0;      ///< of the controller
+    int64_t missed_ticks = 0;    ///< since the last one that was not
+    int64_t answered_tick = -1;  ///< the last
+    int unsent_in_a_row = 0;     ///< ticks whose torques the bus refused
+    std::optional<OpenTick> open;
   };
 
   void BringUp();
   void Exchange(int64_t k);
   void SendLeader(int64_t k, double t_s);
   void Control(Arm& arm, size_t index, int64_t k);
+  /// Whether the board's process begins tick k; if not, what happens in its place.
+  bool BeginsTick(Arm& arm, size_t index, int64_t k);
+  /// A board that sends its estimate in this tick: it runs, is brought up, and is not late.
+  bool IsOnTime(const Arm& arm, int64_t k) const;
+  void Start(Arm& arm, size_t index, int64_t k);
+  ArmNode MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const;
+  /// An open tick goes on.
+  void Continue(Arm& arm, double t_s);
+  void Answer(Arm& arm, int64_t k, double t_s);
+  void TellBus(Arm& arm, BusStatus status);
   /// Frames from the drives to the board, and what it sends to the drives.
   void ToBoard(Arm& arm, int64_t t_ns);
   void ToDrives(Arm& arm, double t_s);
@@ -64,6 +91,8 @@ class Simulation {
   int64_t epoch_ns_;
   std::optional<LeaderPath> leader_;
   VirtualNetwork network_;
+  std::optional<LinkIdentity> identity_;  ///< of the leader; each arm's has its own epoch
+  std::optional<Sealer> leader_sealer_;
   std::vector<Arm> arms_;
   FrameList to_board_;
   FrameList to_drives_;
