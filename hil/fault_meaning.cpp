@@ -1,7 +1,8 @@
 #include "hil/fault_meaning.h"
 
 #include <array>
-#include <limits>
+#include <initializer_list>
+#include <string_view>
 
 #include "hil/scenario_names.h"
 
@@ -188,14 +189,14 @@ constexpr auto kWays = std::to_array<WayMeaning>({
     {FaultWay::kIntermittent, "is 0 now and then", "is not told now and then"},
 });
 
-std::string TargetText(FaultTarget target) {
+std::string TextOf(FaultTarget target) {
   if (target == FaultTarget::kArm) return "an arm";
   return target == FaultTarget::kLeader ? "the leader" : "an arm or the leader";
 }
 
-std::string EndText(FaultEnd end) {
-  if (end == FaultEnd::kMay) return "if given";
-  return end == FaultEnd::kMust ? "required" : "never";
+std::string TextOf(FaultEnd end) {
+  if (end == FaultEnd::kMay) return "";
+  return end == FaultEnd::kMust ? "required" : "none";
 }
 
 std::string TextOf(const FaultValue& value) {
@@ -207,11 +208,25 @@ std::string TextOf(const FaultValue& value) {
 /// Of the signals that share a way: each unit that `value` may have.
 std::string TextOf(FaultWay way) {
   std::string text;
+  std::string last;
   for (const FaultSignal signal : {FaultSignal::kPosition, FaultSignal::kVelocity, FaultSignal::kCurrent}) {
-    const std::string one = TextOf(ValueOf(signal, way));
-    if (text.find(one) == std::string::npos) text += (text.empty() ? "" : "; ") + one;
+    const FaultValue value = ValueOf(signal, way);
+    const std::string all = TextOf(value);
+    if (all == last) continue;
+    const bool same_meaning = !last.empty() && last.rfind(value.meaning, 0) == 0;
+    text.append(text.empty() ? "" : same_meaning ? ", " : "; ").append(same_meaning ? value.unit : all);
+    last = all;
   }
   return text;
+}
+
+std::string Row(std::initializer_list<std::string> cells) {
+  std::string row = "|";
+  for (const std::string& cell : cells) row += (cell.empty() ? "" : " " + cell) + " |";
+  return row + "\n";
+}
+std::string Code(std::string_view name) {
+  return "`" + std::string(name) + "`";
 }
 
 }  // namespace
@@ -229,16 +244,14 @@ FaultValue ValueOf(const FaultConfig& fault) {
 
 std::string FaultTables() {
   std::string text =
-      "| `kind` | of | ends | `value` | what | in real time, too |\n|---|---|---|---|---|---|\n";
+      "| `kind` | of | `until_s` | `value` | what | in real time, too |\n|---|---|---|---|---|---|\n";
   for (const FaultMeaning& meaning : kMeanings) {
-    text.append("| `").append(NameOf(meaning.kind)).append("` | ").append(TargetText(meaning.target));
-    text.append(" | ").append(EndText(meaning.end)).append(" | ").append(TextOf(meaning.value));
-    text.append(" | ").append(meaning.what).append(meaning.in_real_time ? " | yes |\n" : " | |\n");
+    text += Row({Code(NameOf(meaning.kind)), TextOf(meaning.target), TextOf(meaning.end),
+                 TextOf(meaning.value), meaning.what, meaning.in_real_time ? "yes" : ""});
   }
   text += "\n| `way` | a position, velocity or torque | `value` | a status |\n|---|---|---|---|\n";
   for (const WayMeaning& way : kWays) {
-    text.append("| `").append(NameOf(way.way)).append("` | ").append(way.of_value).append(" | ");
-    text.append(TextOf(way.way)).append(" | ").append(way.of_status).append(" |\n");
+    text += Row({Code(NameOf(way.way)), way.of_value, TextOf(way.way), way.of_status});
   }
   return text;
 }

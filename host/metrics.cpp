@@ -103,7 +103,7 @@ void RunMetrics::CompareWithFloor(const ScenarioConfig& run) {
   double sum_squares_m2 = 0.0;
   int tracking = 0;
   for (size_t i = 0; i < arms.size(); ++i) {
-    if (arms[i].standing) continue;  // not measured against the leader
+    if (arms[i].standing || run.criterion.Excuses(arms[i].id)) continue;  // not measured against the leader
     arms[i].floor_rms_m = floor.arms[i].rms_m;
     sum_squares_m2 += floor.arms[i].rms_m * floor.arms[i].rms_m;
     ++tracking;
