@@ -13,6 +13,8 @@ class BoardFaults {
  public:
   BoardFaults(const std::vector<FaultConfig>& faults, int arm_id);
 
+  /// Whether the arm has any, also of its drives and its bus.
+  bool any() const { return !faults_.empty(); }
   /// There is no controller: it was killed, and is not started again yet.
   bool Kills(double t_s) const;
   /// There is one, but it gets no time.

@@ -23,6 +23,12 @@ bool IsOfLink(FaultKind kind) {
   }
 }
 
+/// A number for the way from one node to another.
+uint64_t LinkNumber(int from, int to) {
+  constexpr uint64_t kNodes = kMaxArms + 1;
+  return static_cast<uint64_t>(from) * kNodes + static_cast<uint64_t>(to);
+}
+
 /// The message with its position moved and the seal that it had.
 template <class Message>
 LinkFaults::Payload Moved(LinkFaults::Payload sealed, double distance_m, MessageBuffer* buffer) {
@@ -72,8 +78,8 @@ bool LinkFaults::Loses(int from, int to, int64_t k) const {
 bool LinkFaults::IsLost(const FaultConfig& fault, int from, int to, int64_t k) const {
   if (fault.kind == FaultKind::kPartition) return true;
   if (fault.kind != FaultKind::kLinkLoss) return false;
-  const auto link = static_cast<uint64_t>(from * (kMaxArms + 1) + to);
-  const uint64_t bits = RandomBits(Mix(seed_ ^ kFaultStream), kNetworkStream, link, static_cast<uint64_t>(k));
+  const uint64_t bits =
+      RandomBits(Mix(seed_ ^ kFaultStream), kNetworkStream, LinkNumber(from, to), static_cast<uint64_t>(k));
   return Uniform(bits, 0.0, 1.0) < fault.value;
 }
 
@@ -100,10 +106,9 @@ void LinkFaults::SendJunk(const FaultConfig& fault, int from, int to, int64_t k,
   const auto until = [&](int64_t ticks) {
     return std::llround(fault.value * period_s_ * static_cast<double>(ticks));
   };
-  const auto link = static_cast<uint64_t>(from * (kMaxArms + 1) + to);
   std::array<uint8_t, 256> bytes;
   for (int64_t i = until(k); i < until(k + 1); ++i) {
-    uint64_t bits = RandomBits(seed_, kFaultStream, link, static_cast<uint64_t>(i));
+    uint64_t bits = RandomBits(seed_, kFaultStream, LinkNumber(from, to), static_cast<uint64_t>(i));
     const size_t size = bits % (bytes.size() + 1);
     for (size_t at = 0; at < size; ++at) {
       if (at % 8 == 0) bits = Mix(bits);

@@ -26,9 +26,6 @@ JointVector JointsOf(const PlanarPlant& plant) {
   return Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
 }
 
-// Instants closer together than this are one.
-constexpr double kSameInstant_s = 1e-9;
-
 /// A key as secret as the seed: what is tried here is the check of the seals, not the key.
 LinkIdentity IdentityOf(uint64_t seed) {
   LinkIdentity identity{.key = {}, .epoch = 1};
@@ -63,11 +60,10 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
     arms_.push_back(
         Arm{.node = MakeNode(i, epoch_ns_, 1),
             .bench = EmulatedArm(scenario_, i, seed, start, leader, -scenario_.fleet.timing.bring_up_s),
-            .faults = BoardFaults(scenario_.faults, scenario_.fleet.arms[i].id),
+            .process = BoardProcess(scenario_, scenario_.fleet.arms[i].id),
             .record = TrackingRecord(scenario_),
             .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
-            .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta(),
-            .open = std::nullopt});
+            .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
   }
 }
 
@@ -134,7 +130,7 @@ void Simulation::Exchange(int64_t k) {
     }
   }
   for (size_t i = 0; i < arms_.size(); ++i) {
-    if (IsOnTime(arms_[i], k)) {
+    if (arms_[i].process.IsOnTime(k)) {
       network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
     } else {
       network_.Send(i + 1, k, {});
@@ -164,76 +160,38 @@ void Simulation::SendLeader(int64_t k, double t_s) {
   network_.Send(0, k, SealIfKeyed(leader_sealer_, kLeaderChannel, Encode(message, buffer), buffer));
 }
 
-// One tick of one board, in the order of the real process. Without faults it is over within an instant.
+// One tick of one board, in the order of the real process.
 void Simulation::Control(Arm& arm, size_t index, int64_t k) {
-  if (!BeginsTick(arm, index, k)) return;
   const int64_t tick_ns = NanosecondsOf(k);
-  arm.node.RequestSamples(tick_ns, &to_drives_);
+  const BoardProcess::Turn turn = arm.process.Begin(k);
+  if (turn == BoardProcess::Turn::kNone) return;
+  if (turn == BoardProcess::Turn::kStart) {
+    // As a restarted service: its time 0 comes when its drives have had their time to come up.
+    arm.node = MakeNode(index, NanosecondsOf(arm.process.first_tick()), arm.process.starts());
+  }
+  if (turn == BoardProcess::Turn::kTick) {
+    arm.node.RequestSamples(tick_ns, &to_drives_);
+  } else if (turn != BoardProcess::Turn::kMissed) {
+    arm.process.SetReady(arm.node.BringUp(tick_ns, &to_drives_));
+  }
   ToDrives(arm, TimeOf(k));
   ToBoard(arm, tick_ns);
-  network_.Deliver(index, k, tick_ns, &arm.node);
-  if (scenario_.faults.empty()) return Answer(arm, k, TimeOf(k));
-  arm.open = {k, TimeOf(k) + scenario_.fleet.timing.feedback_timeout_s, std::nullopt};
-  Continue(arm, TimeOf(k));
+  network_.Deliver(index, k, tick_ns, &arm.node);  // a socket keeps messages for a process that gets no time
+  Answer(arm, TimeOf(k));
 }
 
-bool Simulation::BeginsTick(Arm& arm, size_t index, int64_t k) {
-  if (scenario_.faults.empty()) return true;
-  if (arm.faults.Kills(TimeOf(k))) {
-    arm.killed = true;
-    arm.open.reset();
-    return false;
-  }
-  if (arm.killed || (k == arm.first_tick && !arm.ready)) Start(arm, index, k);
-  const bool stopped = arm.faults.Stops(TimeOf(k));
-  const bool late = arm.open.has_value();
-  if (!stopped && !late && k >= arm.first_tick) return true;
-  network_.Deliver(index, k, NanosecondsOf(k), &arm.node);  // its socket keeps them
-  if (stopped || late) {
-    ++arm.missed_ticks;
-  } else {
-    arm.ready = arm.node.BringUp(NanosecondsOf(k), &to_drives_);
-    ToDrives(arm, TimeOf(k));
-    ToBoard(arm, NanosecondsOf(k));
-  }
-  return false;
-}
-
-bool Simulation::IsOnTime(const Arm& arm, int64_t k) const {
-  return !arm.killed && !arm.open && k >= arm.first_tick && !arm.faults.Kills(TimeOf(k)) &&
-         !arm.faults.Stops(TimeOf(k));
-}
-
-// As a service that is restarted: its time 0 comes when its drives have had their time to come up.
-void Simulation::Start(Arm& arm, size_t index, int64_t k) {
-  arm.killed = false;
-  arm.ready = false;
-  arm.first_tick = k + std::llround(scenario_.fleet.timing.bring_up_s / period_s_);
-  arm.node = MakeNode(index, NanosecondsOf(arm.first_tick), ++arm.starts);
-}
-
-void Simulation::Continue(Arm& arm, double t_s) {
-  OpenTick& open = *arm.open;
-  if (!open.answer_s && (arm.node.SamplesComplete() || t_s >= open.samples_by_s - kSameInstant_s)) {
-    open.answer_s = t_s + arm.faults.ComputeTime_s(t_s);
-  }
-  if (!open.answer_s || t_s < *open.answer_s - kSameInstant_s) return;
-  const int64_t k = open.k;
-  arm.open.reset();
-  Answer(arm, k, t_s);
-}
-
-void Simulation::Answer(Arm& arm, int64_t k, double t_s) {
+void Simulation::Answer(Arm& arm, double t_s) {
+  if (!arm.process.Answers(t_s, arm.node.SamplesComplete())) return;
+  const int64_t k = arm.process.tick();
+  const BoardFaults& faults = arm.process.faults();
   arm.node.Step(NanosecondsOf(k), &to_drives_);
-  TellBus(arm, arm.faults.BusAt(t_s, period_s_));
-  if (arm.faults.RefusesTorques(t_s)) {
+  TellBus(arm, faults.BusAt(TimeOf(k), period_s_));
+  if (faults.RefusesTorques(t_s)) {
     TellBus(arm, BusStatus::kQueueFull);
     to_drives_.Clear();
   } else {
     arm.unsent_in_a_row = 0;
   }
-  arm.missed_ticks = 0;
-  arm.answered_tick = k;
   ToDrives(arm, t_s);
   ToBoard(arm, NanosecondsOf(k) + std::llround((t_s - TimeOf(k)) * 1e9));
   for (const double tau_Nm : arm.node.controller().status().tau_Nm) {
@@ -292,7 +250,7 @@ void Simulation::Observe(int64_t k) {
       arm.joint_speed_max_rad_s =
           std::max(arm.joint_speed_max_rad_s, std::abs(plant.dq_rad_s[static_cast<size_t>(joint)]));
     }
-    if (arm.answered_tick != k) continue;  // what it knew is of an earlier tick
+    if (arm.process.tick() != k || arm.process.busy()) continue;  // what it knows is of an earlier tick
     const Zeta& zeta = arm.node.controller().zeta();
     arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
     arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
@@ -343,7 +301,7 @@ void Simulation::AdvancePlants(int64_t k) {
     for (Arm& arm : arms_) {
       arm.bench.AdvanceTo(t_s, &to_board_);
       ToBoard(arm, epoch_ns_ + std::llround(t_s * 1e9));
-      if (arm.open && !arm.faults.Kills(t_s) && !arm.faults.Stops(t_s)) Continue(arm, t_s);
+      Answer(arm, t_s);
       arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
     }
   }
@@ -353,7 +311,7 @@ bool Simulation::WriteLearned(const std::string& folder, std::string* error) con
   for (size_t i = 0; i < arms_.size(); ++i) {
     const ArmNode& node = arms_[i].node;
     const ArmEntry& entry = scenario_.fleet.arms[i];
-    if (!arms_[i].killed && node.fault() == FaultCause::kNone &&
+    if (arms_[i].process.running() && node.fault() == FaultCause::kNone &&
         !WriteInitialState(WarmStart(entry, node.controller()), entry, LearnedFile(folder, entry.id),
                            error)) {
       return false;

@@ -6,7 +6,7 @@
 #include "firmware/app/arm_node.h"
 #include "hil/emulated_arm.h"
 #include "hil/tracking_record.h"
-#include "host/sim/board_faults.h"
+#include "host/sim/board_process.h"
 #include "host/sim/trace_writer.h"
 #include "host/sim/virtual_network.h"
 #include "host/subtask_record.h"
@@ -28,16 +28,10 @@ class Simulation {
   bool WriteLearned(const std::string& folder, std::string* error) const;
 
  private:
-  /// A tick that waits for samples, or in which the board still computes.
-  struct OpenTick {
-    int64_t k;
-    double samples_by_s;
-    std::optional<double> answer_s;  ///< once it has the samples, or does without
-  };
   struct Arm {
     ArmNode node;
     EmulatedArm bench;
-    BoardFaults faults;
+    BoardProcess process;
     TrackingRecord record;
     SubtaskRecord subtask_record;
     ParameterVector theta;  ///< true parameters
@@ -47,29 +41,16 @@ class Simulation {
     int64_t window_ticks = 0;
     double torque_max_Nm = 0.0;
     JointVector floor_posture_rad{};
-    bool killed = false;         ///< no controller is left in `node`
-    uint64_t starts = 1;         ///< of the controller
-    bool ready = true;           ///< its drives were in torque mode in the last tick of the bring-up
-    int64_t first_tick = 0;      ///< of the controller
-    int64_t missed_ticks = 0;    ///< since the last one that was not
-    int64_t answered_tick = -1;  ///< the last
-    int unsent_in_a_row = 0;     ///< ticks whose torques the bus refused
-    std::optional<OpenTick> open;
+    int unsent_in_a_row = 0;  ///< ticks whose torques the bus refused
   };
 
   void BringUp();
   void Exchange(int64_t k);
   void SendLeader(int64_t k, double t_s);
   void Control(Arm& arm, size_t index, int64_t k);
-  /// Whether the board's process begins tick k; if not, what happens in its place.
-  bool BeginsTick(Arm& arm, size_t index, int64_t k);
-  /// A board that sends its estimate in this tick: it runs, is brought up, and is not late.
-  bool IsOnTime(const Arm& arm, int64_t k) const;
-  void Start(Arm& arm, size_t index, int64_t k);
   ArmNode MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const;
-  /// An open tick goes on.
-  void Continue(Arm& arm, double t_s);
-  void Answer(Arm& arm, int64_t k, double t_s);
+  /// The torques of the tick that has begun, if they come now.
+  void Answer(Arm& arm, double t_s);
   void TellBus(Arm& arm, BusStatus status);
   /// Frames from the drives to the board, and what it sends to the drives.
   void ToBoard(Arm& arm, int64_t t_ns);

@@ -1,14 +1,9 @@
-// What faults make of messages on their way and of what a board's bus says, one by one.
-
 #include "host/sim/link_faults.h"
 
 #include <gtest/gtest.h>
 
-#include <optional>
-
 #include "firmware/link/channels.h"
 #include "firmware/link/seal.h"
-#include "host/sim/board_faults.h"
 
 namespace armada {
 namespace {
@@ -112,29 +107,6 @@ TEST(LinkFaults, AForgedMessageHasTheSealOfAnother) {
       });
   EXPECT_EQ(positions_m, (std::vector<double>{1.6, 1.5}));
   EXPECT_EQ(verdicts, (std::vector<SealVerdict>{SealVerdict::kForged, SealVerdict::kGenuine}));
-}
-
-TEST(BoardFaults, ABusThatWasOffIsRestarted) {
-  const BoardFaults faults({Fault(FaultKind::kBusOff)}, 1);
-  EXPECT_EQ(faults.BusAt(0.99, 0.01), BusStatus::kOk);
-  EXPECT_EQ(faults.BusAt(1.0, 0.01), BusStatus::kBusOff);
-  EXPECT_EQ(faults.BusAt(2.99, 0.01), BusStatus::kBusOff);
-  EXPECT_EQ(faults.BusAt(3.0, 0.01), BusStatus::kRestarted);
-  EXPECT_EQ(faults.BusAt(3.01, 0.01), BusStatus::kOk);
-}
-
-TEST(BoardFaults, AreThoseOfTheirArm) {
-  const std::vector<FaultConfig> all = {Fault(FaultKind::kControllerStops),
-                                        Fault(FaultKind::kSlowTick, 0.02, 2),
-                                        Fault(FaultKind::kErrorPassive, 0.0, 2)};
-  const BoardFaults first(all, 1);
-  const BoardFaults second(all, 2);
-  EXPECT_TRUE(first.Stops(2.0));
-  EXPECT_EQ(first.ComputeTime_s(2.0), 0.0);
-  EXPECT_EQ(first.BusAt(2.0, 0.01), BusStatus::kOk);
-  EXPECT_FALSE(second.Stops(2.0));
-  EXPECT_EQ(second.ComputeTime_s(2.0), 0.02);
-  EXPECT_EQ(second.BusAt(2.0, 0.01), BusStatus::kErrorPassive);
 }
 
 }  // namespace

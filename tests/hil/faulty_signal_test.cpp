@@ -61,7 +61,9 @@ TEST(FaultySignal, GarbageIsAnotherNumberEachMillisecondWithinItsBounds) {
 TEST(FaultySignal, SlowIsRenewedOnceAPeriod) {
   const std::vector<double> values = Samples(Signal(FaultWay::kSlow, 0.02), 60);
   for (size_t k = 0; k < values.size(); ++k) {
-    EXPECT_NEAR(values[k], kStart_s + 0.02 * static_cast<double>(k / 20), 0.0011) << k;
+    const size_t whole = k / 20;
+    const auto periods = static_cast<double>(whole);
+    EXPECT_NEAR(values[k], kStart_s + 0.02 * periods, 0.0011) << k;
   }
   EXPECT_EQ(std::set(values.begin(), values.end()).size(), 3u);
 }
