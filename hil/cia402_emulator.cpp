@@ -83,6 +83,11 @@ void Cia402Emulator::OnLoss(uint16_t error_code, FrameList* out) {
   if (option == kQuickStop) machine_.QuickStop();
 }
 
+void Cia402Emulator::Fail(double t_s, FrameList* out) {
+  constexpr uint16_t kContinuousOverCurrent = 0x2310;
+  Fail(t_s, kContinuousOverCurrent, out);
+}
+
 void Cia402Emulator::Fail(double t_s, uint16_t error_code, FrameList* out) {
   machine_.Fail();
   node_.SendEmergency({error_code, canopen::kGenericError}, out);

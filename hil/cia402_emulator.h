@@ -37,6 +37,7 @@ class Cia402Emulator final : public EmulatedDrive {
   double NextEvent(double t_s) const override;
   bool ProducesTorque() const override { return machine_.PowerOn(); }
 
+  void Fail(double t_s, FrameList* out) override;
   /// An error of the drive itself, for example 2310h, continuous over-current: EMCY, reaction, fault.
   void Fail(double t_s, uint16_t error_code, FrameList* out);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil/faulty_drive.h"
 #include "hil/random.h"
 
 namespace armada {
@@ -28,8 +29,12 @@ EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t 
   const ArmEntry& entry = scenario.fleet.arms[index];
   for (size_t i = 0; i < entry.joints.size(); ++i) {
     const uint64_t sensor_seed = RandomBits(seed, kSensorStream, static_cast<uint64_t>(entry.id), i);
-    drives_.push_back(MakeEmulatedDrive(entry.joints[i], scenario.drive, sensor_seed));
+    const uint64_t fault_seed = RandomBits(seed, kFaultStream, static_cast<uint64_t>(entry.id), i);
+    drives_.push_back(WithFaults(MakeEmulatedDrive(entry.joints[i], scenario.drive, sensor_seed),
+                                 entry.joints[i], scenario.faults, entry.id, static_cast<int>(i) + 1, start_s,
+                                 fault_seed));
   }
+  wire_ = MakeFaultyWire(scenario.faults, entry.id, seed);
 }
 
 JointTruth EmulatedArm::TruthOf(size_t joint) const {
@@ -48,7 +53,7 @@ double EmulatedArm::NextEventClock() const {
     next_s = std::min(next_s, drive->NextTorqueChange(clock_s_));
     next_s = std::min(next_s, drive->NextEvent(clock_s_));
   }
-  return next_s;
+  return wire_ ? std::min(next_s, wire_->NextArrival() - start_s_) : next_s;
 }
 
 void EmulatedArm::ReleaseIfReady() {
@@ -102,7 +107,11 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
     if (released_ && step_end_s - clock_s_ > kSameInstant_s) Integrate(step_end_s - clock_s_);
     clock_s_ = step_end_s;
     if (clock_s_ >= quiet_until_s_) {
-      for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), out);
+      for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnTime(clock_s_, TruthOf(i), Outbox(out));
+      if (wire_) {
+        SendOverWire(out);
+        TakeLateFrames(out);
+      }
     }
     BrakeIfOff();
     ReleaseIfReady();
@@ -111,8 +120,32 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
 
 void EmulatedArm::OnFrame(double t_s, const CanFrame& frame, FrameList* out) {
   AdvanceTo(t_s, out);
-  for (size_t i = 0; i < drives_.size(); ++i) drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), out);
+  if (!wire_ || wire_->Passes(time_s(), frame, FaultyWire::Way::kToDrives)) HandOver(frame, out);
   quiet_until_s_ = clock_s_;
+}
+
+void EmulatedArm::HandOver(const CanFrame& frame, FrameList* out) {
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), Outbox(out));
+  }
+  if (wire_) SendOverWire(out);
+}
+
+void EmulatedArm::SendOverWire(FrameList* out) {
+  for (const CanFrame& frame : sent_) {
+    if (wire_->Passes(time_s(), frame, FaultyWire::Way::kFromDrives)) out->Push(frame);
+  }
+  sent_.Clear();
+}
+
+void EmulatedArm::TakeLateFrames(FrameList* out) {
+  while (const auto late = wire_->TakeArrived(time_s())) {
+    if (late->way == FaultyWire::Way::kFromDrives) {
+      out->Push(late->frame);
+    } else {
+      HandOver(late->frame, out);
+    }
+  }
 }
 
 }  // namespace armada

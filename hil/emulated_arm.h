@@ -1,17 +1,20 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hil/disturbance.h"
 #include "hil/emulated_drive.h"
+#include "hil/faulty_wire.h"
 #include "hil/start_state.h"
 
 namespace armada {
 
 /// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
 /// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
-/// let go with the start speed. With every drive off for 0.1 s the brakes close again.
+/// let go with the start speed. With every drive off for 0.1 s the brakes close again. Faults of its drives
+/// and of its bus are the scenario's.
 class EmulatedArm {
  public:
   /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial
@@ -34,6 +37,13 @@ class EmulatedArm {
 
  private:
   JointTruth TruthOf(size_t joint) const;
+  /// The frame reaches the drives.
+  void HandOver(const CanFrame& frame, FrameList* out);
+  /// Where the drives put what they send.
+  FrameList* Outbox(FrameList* out) { return wire_ ? &sent_ : out; }
+  /// What the drives have sent goes over a wire with faults.
+  void SendOverWire(FrameList* out);
+  void TakeLateFrames(FrameList* out);
   double NextEventClock() const;
   void ReleaseIfReady();
   void BrakeIfOff();
@@ -44,6 +54,8 @@ class EmulatedArm {
   Disturbance disturbance_;
   const LeaderPath* leader_;
   std::vector<std::unique_ptr<EmulatedDrive>> drives_;
+  std::optional<FaultyWire> wire_;  ///< without a fault there is none between board and drives
+  FrameList sent_;
   PlanarPlant::Joints start_speed_rad_s_;
   PlanarPlant::Joints d_Nm_{};
   double d_until_s_ = 0.0;  ///< end of the interval that d_Nm_ is held for

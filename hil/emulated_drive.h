@@ -66,6 +66,9 @@ class EmulatedDrive {
 
   /// True while the drive's power stage is on.
   virtual bool ProducesTorque() const = 0;
+
+  /// Something in the drive fails: it reports an error of its kind, and takes its power away as it then does.
+  virtual void Fail(double t_s, FrameList* out) = 0;
 };
 
 /// The drive that speaks the joint's profile. `seed`: of the sensor's noise.

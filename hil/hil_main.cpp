@@ -16,10 +16,12 @@
 #include "firmware/app/realtime.h"
 #include "firmware/can/open_bus.h"
 #include "hil/active_drive.h"
+#include "hil/fault_meaning.h"
 #include "hil/hil_report.h"
 #include "hil/hil_server.h"
 #include "hil/poll_clock.h"
 #include "hil/scenario_file.h"
+#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {
@@ -132,6 +134,15 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   return report;
 }
 
+// Faults of boards, of the leader and of the link are no emulation's to make.
+void TellWhatIsLeftOut(const std::vector<FaultConfig>& faults) {
+  for (const FaultConfig& fault : faults) {
+    if (MeaningOf(fault.kind).in_real_time) continue;
+    std::cerr << "armada-hil: fault " << NameOf(fault.kind) << " at " << fault.at_s
+              << " s is left out: it is not of a drive or of its bus\n";
+  }
+}
+
 int WriteResults(const HilReport& report, const Logs& logs, const std::string& directory) {
   std::string error;
   if (!WriteHilReport(report, logs, directory + "/hil.json", &error)) return Fail(error);
@@ -173,6 +184,7 @@ int Run(const Options& options) {
               << now_ns << ", and within the next hour\n";
     return kExitUsage;
   }
+  TellWhatIsLeftOut(scenario->faults);
   const HilReport report = Serve(*scenario, options, epoch_ns, buses, logs, clock.get());
   const int code = options.out.empty() ? kExitOk : WriteResults(report, logs, options.out);
   for (const HilArmResult& arm : report.arms) {

@@ -15,6 +15,9 @@ using mit::Special;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRadPerTurn = 2.0 * std::numbers::pi;
 
+constexpr uint8_t kDamiaoOverCurrent = 0xA;
+constexpr uint8_t kCubeMarsOverCurrent = 2;
+
 uint32_t FloatBits(double value) {
   return std::bit_cast<uint32_t>(static_cast<float>(value));
 }
@@ -137,6 +140,12 @@ void MitEmulator::PowerOff() {
   enabled_ = false;
   command_ = {};
   torque_.Cut();
+}
+
+void MitEmulator::Fail(double t_s, FrameList* /*out*/) {
+  CheckTimeout(t_s);
+  if (joint_.profile == DriveProfile::kMiniCheetah) return PowerOff();  // has no word for it
+  Fail(is_damiao() ? kDamiaoOverCurrent : kCubeMarsOverCurrent);
 }
 
 void MitEmulator::Fail(uint8_t status) {

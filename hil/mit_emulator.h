@@ -29,6 +29,7 @@ class MitEmulator final : public EmulatedDrive {
   double NextEvent(double t_s) const override;
   bool ProducesTorque() const override { return enabled_; }
 
+  void Fail(double t_s, FrameList* out) override;
   /// The drive fails by itself: status of a Damiao reply, error code of a CubeMars one. The power stage goes
   /// off. 0: the cause is gone.
   void Fail(uint8_t status);

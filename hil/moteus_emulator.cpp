@@ -200,6 +200,11 @@ void MoteusEmulator::PowerOff(Mode mode) {
   enabled_at_s_ = deadline_s_ = next_damping_s_ = kNever;
 }
 
+void MoteusEmulator::Fail(double /*t_s*/, FrameList* /*out*/) {
+  constexpr uint8_t kMotorDriverFault = 33;
+  Fail(kMotorDriverFault);
+}
+
 void MoteusEmulator::Fail(uint8_t fault) {
   fault_ = fault;
   PowerOff(Mode::kFault);

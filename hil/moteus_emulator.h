@@ -37,7 +37,8 @@ class MoteusEmulator final : public EmulatedDrive {
   double NextEvent(double t_s) const override;
   bool ProducesTorque() const override { return mode_ == moteus::Mode::kPosition; }
 
-  /// The drive fails by itself.
+  void Fail(double t_s, FrameList* out) override;
+  /// The drive fails by itself, with this fault.
   void Fail(uint8_t fault);
 
  private:

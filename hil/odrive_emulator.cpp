@@ -13,6 +13,9 @@ using odrive::ControlMode;
 /// What the emulated drive says that it is: a Pro with the firmware of the manual that it is made after.
 constexpr odrive::Version kVersion = {.protocol = 2, .hardware = {4, 4, 58}, .firmware = {0, 6, 10}};
 constexpr double kNever = std::numeric_limits<double>::infinity();
+// Axis errors that the drive has by itself.
+constexpr uint32_t kMotorFailed = 0x40;      // 0.5
+constexpr uint32_t kGateDriverFault = 0x20;  // 0.6
 
 }  // namespace
 
@@ -81,8 +84,16 @@ void ODriveEmulator::OnDataFrame(double t_s, Command command, const CanFrame& fr
 
 void ODriveEmulator::CheckWatchdog(double t_s) {
   const double deadline_s = WatchdogDeadline_s();
-  if (t_s < deadline_s) return;
-  error_ |= odrive::WatchdogError(firmware_);
+  if (t_s >= deadline_s) Disarm(odrive::WatchdogError(firmware_));
+}
+
+void ODriveEmulator::Fail(double t_s, FrameList* /*out*/) {
+  CheckWatchdog(t_s);
+  Disarm(firmware_ == odrive::Firmware::kV05 ? kMotorFailed : kGateDriverFault);
+}
+
+void ODriveEmulator::Disarm(uint32_t error) {
+  error_ |= error;
   state_ = AxisState::kIdle;
   torque_.Cut();
 }

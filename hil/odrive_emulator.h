@@ -13,9 +13,9 @@ namespace armada {
 /// One emulated ODrive axis, calibrated and with a torque loop that is exact but for its latency. In torque
 /// control and closed loop it produces the last torque input, within its own limit. As the firmware does: it
 /// starts idle in position control, keeps the torque input through a disarm, is fed by every frame with its
-/// node id, and latches errors (watchdog, also while idle; e-stop) that disarm until they are cleared.
-/// Control modes other than torque and states other than idle and closed loop are not emulated: the former
-/// produce no torque, the latter are not entered.
+/// node id, and latches errors (watchdog, also while idle; e-stop; its own) that disarm until they are
+/// cleared. Control modes other than torque and states other than idle and closed loop are not emulated: the
+/// former produce no torque, the latter are not entered.
 class ODriveEmulator final : public EmulatedDrive {
  public:
   /// `joint` gives address, gear, direction, offset and the drive's torque limit. `seed`: of the velocity
@@ -28,10 +28,12 @@ class ODriveEmulator final : public EmulatedDrive {
   double NextTorqueChange(double t_s) const override;
   double NextEvent(double t_s) const override;
   bool ProducesTorque() const override { return state_ == odrive::AxisState::kClosedLoop; }
+  void Fail(double t_s, FrameList* out) override;
 
  private:
   void OnDataFrame(double t_s, odrive::Command command, const CanFrame& frame);
   void CheckWatchdog(double t_s);
+  void Disarm(uint32_t error);
   double WatchdogDeadline_s() const;
   /// Lets the torque that now belongs to the drive's state and input take over one latency after `t_s`.
   void ScheduleTorque(double t_s);

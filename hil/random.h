@@ -29,7 +29,8 @@ enum RandomPurpose : uint64_t {
   kDisturbanceStream,
   kNetworkStream,
   kSensorStream,
-  kFleetStream
+  kFleetStream,
+  kFaultStream
 };
 
 }  // namespace armada

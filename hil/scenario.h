@@ -7,6 +7,7 @@
 
 #include "firmware/app/fleet.h"
 #include "hil/emulated_drive.h"
+#include "hil/fault.h"
 
 namespace armada {
 
@@ -167,10 +168,15 @@ struct CriterionConfig {
   double agreement_max_m = 0.001;
   std::vector<int> standing;
   double standing_speed_max_rad_s = 1.0;
+  std::vector<int> excused;
 
   /// Whether this arm is to stand still in the window, having lost the leader.
   bool Stands(int arm_id) const {
     return std::find(standing.begin(), standing.end(), arm_id) != standing.end();
+  }
+  /// Whether a fault takes this arm out.
+  bool Excuses(int arm_id) const {
+    return std::find(excused.begin(), excused.end(), arm_id) != excused.end();
   }
 
   template <class Visitor>
@@ -191,6 +197,8 @@ struct CriterionConfig {
     parameter({"standing_speed_max_rad_s", "rad/s", 0, 1e3,
                "largest joint speed of an arm that stands still; the disturbance goes on"},
               standing_speed_max_rad_s);
+    parameter({"excused", "", 1, kMaxArms, "ids of arms that a fault takes out: they are not judged"},
+              excused);
   }
 };
 
@@ -221,6 +229,7 @@ struct ScenarioConfig {
   NetworkConfig network;
   PlantConfig plant;
   CriterionConfig criterion;
+  std::vector<FaultConfig> faults;
   std::vector<std::optional<ArmInitialState>> learned;  ///< from start.learned, by arm; empty: none
 
   template <class Visitor>
@@ -236,6 +245,7 @@ struct ScenarioConfig {
     parameter.Table("network", network);
     parameter.Table("plant", plant);
     parameter.Table("criterion", criterion);
+    parameter.List({"fault", "something that goes wrong at a time of the run"}, faults);
   }
 };
 

@@ -15,6 +15,7 @@
 #include "firmware/app/config/toml_writer.h"
 #include "firmware/app/config/value_text.h"
 #include "firmware/app/initial_state.h"
+#include "hil/scenario_base.h"
 #include "hil/scenario_names.h"
 #include "hil/scenario_rules.h"
 
@@ -23,35 +24,25 @@ namespace {
 
 constexpr const char* kFleetFile = "fleet.toml";
 constexpr const char* kScenarioFile = "scenario.toml";
-constexpr const char* kOverrides = "overrides";
+constexpr const char* kCommandLine = "--set";  // the "file" of what it gives, see ConfigError
 
 /// The scenario file as it is written.
 struct ScenarioLayout {
   std::string fleet;
   ScenarioConfig scenario;
+  std::string base = kNoBase;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"name", "", 0, 0, "name of the scenario"}, scenario.name);
     parameter({"fleet", "", 0, 0, "fleet file, relative to this one"}, fleet);
+    parameter({"base", "", 0, 0,
+               "scenario file, relative to this one, or none: what is given here goes before what is given "
+               "there, table by table; a list replaces a list"},
+              base);
     scenario.Visit(parameter);
   }
 };
-
-/// Takes [overrides] out of the tree.
-std::vector<Override> TakeOverrides(ConfigNode* root, std::vector<ConfigError>* errors) {
-  const auto table = std::find_if(root->children.begin(), root->children.end(),
-                                  [](const ConfigNode& child) { return child.key == kOverrides; });
-  if (table == root->children.end()) return {};
-  std::vector<Override> overrides;
-  if (table->kind == ConfigNode::Kind::kTable) {
-    overrides = OverridesIn(*table);
-  } else {
-    Report(ConfigCursor(*root).At(kOverrides), "given " + table->Describe() + ", expected a table", errors);
-  }
-  root->children.erase(table);
-  return overrides;
-}
 
 bool Contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -78,12 +69,19 @@ std::vector<Override> ApplyOwn(const std::vector<Override>& overrides, ConfigNod
   return rest;
 }
 
+/// What a key of a scenario names is relative to the file that it stands in, a base perhaps; on the command
+/// line to the scenario.
+std::filesystem::path PathFrom(const ConfigCursor& at, const std::string& scenario_path,
+                               const std::string& name) {
+  const std::filesystem::path file(at.node().file == kCommandLine ? scenario_path : at.node().file);
+  return (file.parent_path() / name).lexically_normal();
+}
+
 std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const std::string& name,
                                         const ConfigCursor& at, const std::vector<Override>& overrides,
                                         std::vector<ConfigError>* errors) {
   if (name.empty()) return std::nullopt;  // said already
-  const std::filesystem::path path =
-      (std::filesystem::path(scenario_path).parent_path() / name).lexically_normal();
+  const std::filesystem::path path = PathFrom(at, scenario_path, name);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     Report(at, "given " + ValueText(name) + ", but there is no file " + path.string(), errors);
@@ -95,8 +93,8 @@ std::optional<LoadedFleet> LoadItsFleet(const std::string& scenario_path, const 
 // What the arms have learnt, as start.learned says.
 void LoadLearned(const ConfigCursor& at, ScenarioConfig* scenario, std::vector<ConfigError>* errors) {
   if (scenario->start.learned == StartConfig().learned) return;
-  const std::filesystem::path folder = std::filesystem::absolute(
-      (std::filesystem::path(scenario->file).parent_path() / scenario->start.learned).lexically_normal());
+  const std::filesystem::path folder =
+      std::filesystem::absolute(PathFrom(at, scenario->file, scenario->start.learned));
   bool found = false;
   for (const ArmEntry& arm : scenario->fleet.arms) {
     scenario->learned.emplace_back();
@@ -123,12 +121,16 @@ std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::v
   const std::vector<Override> from_command_line = ParseSets(sets, errors);
   auto tree = LoadToml(path, errors);
   if (!tree) return std::nullopt;
-  std::vector<Override> overrides = TakeOverrides(&*tree, errors);
+  std::vector<Override> overrides;
+  if (!PutOnBase(&*tree, &overrides, errors)) return std::nullopt;
   overrides.insert(overrides.end(), from_command_line.begin(), from_command_line.end());
   const std::vector<Override> for_fleet = ApplyOwn(overrides, &*tree, errors);
 
   ScenarioLayout layout;
   ReadConfig(*tree, &layout, errors);
+  if (layout.base != kNoBase) {
+    Report(ConfigCursor(*tree).At("base"), "allowed in a scenario file, not in overrides", errors);
+  }
   ScenarioConfig& scenario = layout.scenario;
   scenario.file = path;
   TaskVector& centre = scenario.start.zeta_x_centre_m;

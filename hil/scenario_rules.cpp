@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware/app/config/value_text.h"
+#include "hil/fault_rules.h"
 #include "hil/leader_path.h"
 #include "hil/scenario_names.h"
 
@@ -154,14 +155,18 @@ void CheckLostLinks(const ScenarioConfig& scenario, const ConfigCursor& at, Erro
   }
 }
 
-void CheckStanding(const ScenarioConfig& scenario, const ConfigCursor& at, Errors* errors) {
-  const std::vector<int>& standing = scenario.criterion.standing;
-  for (size_t i = 0; i < standing.size(); ++i) {
-    if (scenario.fleet.IndexOf(standing[i]) >= 0) continue;
-    Report(at.Element(i),
-           "given " + std::to_string(standing[i]) + ", allowed are the arms " + AllIds(scenario.fleet),
+void CheckArms(const std::vector<int>& ids, const FleetConfig& fleet, const ConfigCursor& at,
+               Errors* errors) {
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (fleet.IndexOf(ids[i]) >= 0) continue;
+    Report(at.Element(i), "given " + std::to_string(ids[i]) + ", allowed are the arms " + AllIds(fleet),
            errors);
   }
+}
+
+void CheckStanding(const ScenarioConfig& scenario, const ConfigCursor& at, Errors* errors) {
+  const std::vector<int>& standing = scenario.criterion.standing;
+  CheckArms(standing, scenario.fleet, at, errors);
   if (!standing.empty() && scenario.leader.kind == LeaderKind::kNone)
     Report(at, "given arms that lose the leader, but there is none", errors);
 }
@@ -215,6 +220,8 @@ void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& 
   CheckLeaderFits(scenario, root, errors);
   CheckLostLinks(scenario, root.At("network.lost"), errors);
   CheckStanding(scenario, root.At("criterion.standing"), errors);
+  CheckArms(scenario.criterion.excused, scenario.fleet, root.At("criterion.excused"), errors);
+  CheckFaults(scenario, root.At("fault"), errors);
   if (scenario.plant.step_s > scenario.fleet.timing.period_s) {
     Report(root.At("plant.step_s"),
            "given " + ValueText(scenario.plant.step_s) +

@@ -79,6 +79,7 @@ void RunMetrics::Judge(const CriterionConfig& criterion) {
   ok = !arms.empty();
   for (ArmMetrics& arm : arms) {
     arm.standing = criterion.Stands(arm.id);
+    if (criterion.Excuses(arm.id)) continue;
     if (arm.standing) {
       if (!(arm.joint_speed_max_rad_s < criterion.standing_speed_max_rad_s)) ok = false;
     } else {
@@ -103,7 +104,7 @@ void RunMetrics::CompareWithFloor(const ScenarioConfig& run) {
   double sum_squares_m2 = 0.0;
   int tracking = 0;
   for (size_t i = 0; i < arms.size(); ++i) {
-    if (arms[i].standing) continue;  // not measured against the leader
+    if (arms[i].standing || run.criterion.Excuses(arms[i].id)) continue;  // not measured against the leader
     arms[i].floor_rms_m = floor.arms[i].rms_m;
     sum_squares_m2 += floor.arms[i].rms_m * floor.arms[i].rms_m;
     ++tracking;

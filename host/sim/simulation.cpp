@@ -5,7 +5,9 @@
 
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/initial_state.h"
+#include "hil/random.h"
 #include "host/floor/floor.h"
+#include "host/sim/link_faults.h"
 
 namespace armada {
 namespace {
@@ -25,6 +27,15 @@ JointVector JointsOf(const PlanarPlant& plant) {
   return Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
 }
 
+/// A key as secret as the seed: what is tried here is the check of the seals, not the key.
+LinkIdentity IdentityOf(uint64_t seed) {
+  LinkIdentity identity{.key = {}, .epoch = 1};
+  for (size_t i = 0; i < identity.key.size(); ++i) {
+    identity.key[i] = static_cast<uint8_t>(RandomBits(seed, kFaultStream, i));
+  }
+  return identity;
+}
+
 double Rms(double sum_squares, int64_t count) {
   return count > 0 ? std::sqrt(sum_squares / static_cast<double>(count)) : 0.0;
 }
@@ -37,20 +48,33 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
       period_s_(scenario.fleet.timing.period_s),
       period_ns_(static_cast<int64_t>(std::llround(period_s_ * 1e9))),
       epoch_ns_(1'000'000'000),
+      fleet_digest_(FleetDigest(scenario_.fleet)),
       network_(scenario_, seed) {
   if (scenario_.leader.kind != LeaderKind::kNone) leader_.emplace(scenario_.leader);
+  if (NeedsSeals(scenario_.faults)) {
+    identity_ = IdentityOf(seed);
+    leader_sealer_.emplace(*identity_, kLeaderSender);
+  }
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
   arms_.reserve(scenario_.fleet.arms.size());
-  const BoardStart board{StartMode::kRunning, FleetDigest(scenario_.fleet), std::nullopt};
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
     const ArmStart start = DrawStart(scenario_, i, seed, leader);
     arms_.push_back(
-        Arm{.node = ArmNode(scenario_.fleet, i, start.controller, epoch_ns_, board),
+        Arm{.node = MakeNode(i, epoch_ns_, 1),
             .bench = EmulatedArm(scenario_, i, seed, start, leader, -scenario_.fleet.timing.bring_up_s),
+            .process = BoardProcess(scenario_, scenario_.fleet.arms[i].id),
             .record = TrackingRecord(scenario_),
             .subtask_record = SubtaskRecord(scenario_.fleet.arms[i]),
             .theta = PlanarArm(scenario_.fleet.arms[i].arm).Theta()});
   }
+}
+
+// Started anew, a controller has forgotten all, and nobody but the operator lets it move the arm.
+ArmNode Simulation::MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const {
+  const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
+  BoardStart board{starts == 1 ? StartMode::kRunning : StartMode::kMonitor, fleet_digest_, identity_};
+  if (board.identity) board.identity->epoch = starts;
+  return {scenario_.fleet, index, DrawStart(scenario_, index, seed_, leader).controller, epoch_ns, board};
 }
 
 RunMetrics Simulation::Run(TraceWriter* trace) {
@@ -98,20 +122,32 @@ void Simulation::Exchange(int64_t k) {
     // The newest state on the leader's own grid.
     const double rate_hz = scenario_.leader.rate_hz;
     const double t_s = std::floor(TimeOf(k) * rate_hz + 1e-6) / rate_hz;
-    if (leader_sequence_ > 0 && t_s == leader_sent_s_) {
+    const bool silent = FindActive(scenario_.faults, FaultKind::kLeaderDies, 0, TimeOf(k)) != nullptr ||
+                        FindActive(scenario_.faults, FaultKind::kLeaderStops, 0, TimeOf(k)) != nullptr;
+    if (silent || (leader_sequence_ > 0 && t_s == leader_sent_s_)) {
       network_.Send(0, k, {});  // nothing new from a leader slower than the ticks
     } else {
       SendLeader(k, t_s);
     }
   }
   for (size_t i = 0; i < arms_.size(); ++i) {
-    network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
+    if (arms_[i].process.IsOnTime(k)) {
+      network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
+    } else {
+      network_.Send(i + 1, k, {});
+    }
   }
 }
 
 void Simulation::SendLeader(int64_t k, double t_s) {
   leader_sent_s_ = t_s;
-  const Zeta zeta = leader_->At(t_s);
+  Zeta zeta = leader_->At(t_s);
+  if (const auto* const jump = FindActive(scenario_.faults, FaultKind::kLeaderJumps, 0, TimeOf(k))) {
+    zeta.x_m.array() += jump->value;
+  }
+  if (FindActive(scenario_.faults, FaultKind::kLeaderNonfinite, 0, TimeOf(k)) != nullptr) {
+    zeta.x_m.setConstant(std::nan(""));
+  }
   leader_t message{};
   message.stamp_ns = epoch_ns_ + std::llround(t_s * 1e9);
   message.sequence = ++leader_sequence_;
@@ -121,19 +157,39 @@ void Simulation::SendLeader(int64_t k, double t_s) {
   Copy(zeta.v_m_s, message.v_m_s);
   Copy(zeta.a_m_s2, message.a_m_s2);
   Copy(leader_->Jerk(t_s), message.jerk_m_s3);
-  network_.Send(0, k, Encode(message, network_.BufferFor(0, k)));
+  MessageBuffer* const buffer = network_.BufferFor(0, k);
+  network_.Send(0, k, SealIfKeyed(leader_sealer_, kLeaderChannel, Encode(message, buffer), buffer));
 }
 
 // One tick of one board, in the order of the real process.
 void Simulation::Control(Arm& arm, size_t index, int64_t k) {
   const int64_t tick_ns = NanosecondsOf(k);
-  arm.node.RequestSamples(tick_ns, &to_drives_);
+  const BoardProcess::Turn turn = arm.process.Begin(k);
+  if (turn == BoardProcess::Turn::kNone) return;
+  if (turn == BoardProcess::Turn::kStart) {
+    // As a restarted service: its time 0 comes timing.bring_up_s later.
+    arm.node = MakeNode(index, NanosecondsOf(arm.process.first_tick()), arm.process.starts());
+  }
+  if (turn == BoardProcess::Turn::kTick) arm.node.RequestSamples(tick_ns, &to_drives_);
   ToDrives(arm, TimeOf(k));
   ToBoard(arm, tick_ns);
-  network_.Deliver(index, k, tick_ns, &arm.node);
-  arm.node.Step(tick_ns, &to_drives_);
-  ToDrives(arm, TimeOf(k));
-  ToBoard(arm, tick_ns);
+  network_.Deliver(index, k, tick_ns, &arm.node);  // a socket keeps messages for a process that gets no time
+  Answer(arm, TimeOf(k));
+}
+
+void Simulation::Answer(Arm& arm, double t_s) {
+  if (!arm.process.Answers(t_s, arm.node.SamplesComplete())) return;
+  const int64_t k = arm.process.tick();
+  const BoardFaults& faults = arm.process.faults();
+  arm.node.Step(NanosecondsOf(k), &to_drives_);
+  const BusStatus bus = faults.BusAt(TimeOf(k), period_s_);
+  const bool sent = !faults.RefusesTorques(t_s) && bus != BusStatus::kBusOff && bus != BusStatus::kDown;
+  if (!sent) to_drives_.Clear();
+  arm.node.bus_watch().OnBus(bus);
+  arm.node.bus_watch().OnSent(sent);
+  arm.node.bus_watch().OnTick(NanosecondsOf(k), t_s - TimeOf(k), arm.process.missed_ticks());
+  ToDrives(arm, t_s);
+  ToBoard(arm, NanosecondsOf(k) + std::llround((t_s - TimeOf(k)) * 1e9));
   for (const double tau_Nm : arm.node.controller().status().tau_Nm) {
     arm.torque_max_Nm = std::max(arm.torque_max_Nm, std::abs(tau_Nm));
   }
@@ -158,16 +214,17 @@ void Simulation::Observe(int64_t k) {
                                     TaskVector::Zero(PlanarArm::kTaskDim)};
   for (size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
-    const Zeta& zeta = arm.node.controller().zeta();
-    arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
-    arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
-    arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
-    arm.estimator_max.Update(zeta, truth);
     const PlanarPlant& plant = arm.bench.plant();
     for (int joint = 0; joint < plant.dof(); ++joint) {
       arm.joint_speed_max_rad_s =
           std::max(arm.joint_speed_max_rad_s, std::abs(plant.dq_rad_s[static_cast<size_t>(joint)]));
     }
+    if (arm.process.tick() != k || arm.process.busy()) continue;  // what it knows is of an earlier tick
+    const Zeta& zeta = arm.node.controller().zeta();
+    arm.estimator_squares.x_m += (zeta.x_m - truth.x_m).squaredNorm();
+    arm.estimator_squares.v_m_s += (zeta.v_m_s - truth.v_m_s).squaredNorm();
+    arm.estimator_squares.a_m_s2 += (zeta.a_m_s2 - truth.a_m_s2).squaredNorm();
+    arm.estimator_max.Update(zeta, truth);
     for (size_t j = 0; j < i; ++j) {
       estimate_spread_m_ =
           std::max(estimate_spread_m_, (zeta.x_m - arms_[j].node.controller().zeta().x_m).norm());
@@ -213,6 +270,7 @@ void Simulation::AdvancePlants(int64_t k) {
     for (Arm& arm : arms_) {
       arm.bench.AdvanceTo(t_s, &to_board_);
       ToBoard(arm, epoch_ns_ + std::llround(t_s * 1e9));
+      Answer(arm, t_s);
       arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
     }
   }
@@ -222,8 +280,9 @@ bool Simulation::WriteLearned(const std::string& folder, std::string* error) con
   for (size_t i = 0; i < arms_.size(); ++i) {
     const ArmNode& node = arms_[i].node;
     const ArmEntry& entry = scenario_.fleet.arms[i];
-    if (GivesTorque(node.state()) && !WriteInitialState(WarmStart(entry, node.controller()), entry,
-                                                        LearnedFile(folder, entry.id), error)) {
+    if (arms_[i].process.running() && GivesTorque(node.state()) &&
+        !WriteInitialState(WarmStart(entry, node.controller()), entry, LearnedFile(folder, entry.id),
+                           error)) {
       return false;
     }
   }

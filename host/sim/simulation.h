@@ -6,6 +6,7 @@
 #include "firmware/app/arm_node.h"
 #include "hil/emulated_arm.h"
 #include "hil/tracking_record.h"
+#include "host/sim/board_process.h"
 #include "host/sim/trace_writer.h"
 #include "host/sim/virtual_network.h"
 #include "host/subtask_record.h"
@@ -13,7 +14,8 @@
 namespace armada {
 
 /// A scenario in virtual time and in one thread: every arm's whole ArmNode with its drive and message codecs,
-/// its emulated bench, and the network between. The same scenario and seed give the same bytes.
+/// its emulated bench, and the network between, with the scenario's faults in all of them. The same scenario
+/// and seed give the same bytes.
 class Simulation {
  public:
   Simulation(const ScenarioConfig& scenario, uint64_t seed);
@@ -29,6 +31,7 @@ class Simulation {
   struct Arm {
     ArmNode node;
     EmulatedArm bench;
+    BoardProcess process;
     TrackingRecord record;
     SubtaskRecord subtask_record;
     ParameterVector theta;  ///< true parameters
@@ -44,6 +47,9 @@ class Simulation {
   void Exchange(int64_t k);
   void SendLeader(int64_t k, double t_s);
   void Control(Arm& arm, size_t index, int64_t k);
+  ArmNode MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const;
+  /// The torques of the tick that has begun, if they come now.
+  void Answer(Arm& arm, double t_s);
   /// Frames from the drives to the board, and what it sends to the drives.
   void ToBoard(Arm& arm, int64_t t_ns);
   void ToDrives(Arm& arm, double t_s);
@@ -62,8 +68,11 @@ class Simulation {
   double period_s_;
   int64_t period_ns_;
   int64_t epoch_ns_;
+  int64_t fleet_digest_;
   std::optional<LeaderPath> leader_;
   VirtualNetwork network_;
+  std::optional<LinkIdentity> identity_;  ///< of the leader; each arm's has its own epoch
+  std::optional<Sealer> leader_sealer_;
   std::vector<Arm> arms_;
   FrameList to_board_;
   FrameList to_drives_;

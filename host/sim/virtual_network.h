@@ -4,11 +4,12 @@
 
 #include "firmware/app/arm_node.h"
 #include "hil/scenario.h"
+#include "host/sim/link_faults.h"
 
 namespace armada {
 
 /// The LCM link in virtual time: real encoded messages, delayed by whole ticks and lost at random or by a
-/// link that fails, one receiver at a time.
+/// link that fails, one receiver at a time, and what the scenario's faults make of them.
 class VirtualNetwork {
  public:
   VirtualNetwork(const ScenarioConfig& scenario, uint64_t seed);
@@ -27,9 +28,12 @@ class VirtualNetwork {
     MessageBuffer buffer;
     size_t size = 0;  ///< 0: nothing sent
   };
+  /// What a sender sent in tick k; empty when that was nothing.
+  std::span<const uint8_t> Sent(size_t sender, int64_t k);
   Slot& SlotOf(size_t sender, int64_t k) { return slots_[sender * depth_ + static_cast<size_t>(k) % depth_]; }
 
   NetworkConfig config_;
+  LinkFaults faults_;
   uint64_t seed_;
   double period_s_;
   size_t depth_;

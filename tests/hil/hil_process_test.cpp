@@ -208,6 +208,15 @@ TEST_F(HilProcessTest, EndsByItselfAfterItsSeconds) {
   EXPECT_TRUE(report["arms"].at(0)["released_s"].is_null());
 }
 
+TEST_F(HilProcessTest, HasFaultsOfDrivesAndBusesAndSaysWhatItLeavesOut) {
+  Start("hil", {Scenario(), "--seconds", "0.25", "--out", Out(), "--set",
+                "fault=[{kind=\"drive\",at_s=0.1,arm=4,signal=\"status\",way=\"off\"},"
+                "{kind=\"leader_dies\",at_s=0.2}]"});
+  EXPECT_EQ(ExitCode(), kExitOk) << Said("hil");
+  EXPECT_NE(Said("hil").find("fault leader_dies at 0.2 s is left out"), std::string::npos) << Said("hil");
+  EXPECT_EQ(Said("hil").find("fault drive"), std::string::npos) << Said("hil");
+}
+
 TEST_F(HilProcessTest, StandsReadyBeforeTheGivenEpoch) {
   const int64_t epoch_ns = MonotonicNow() + 1'000'000'000'000;
   Start("hil", {Scenario(), "--epoch-ns", std::to_string(epoch_ns), "--out", Out()});

@@ -38,7 +38,7 @@ class ShippedScenario : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedScenario, IsValidAndNamedAsItsFile) {
   const ScenarioConfig scenario = Load(GetParam());
-  EXPECT_EQ(scenario.name, GetParam());
+  EXPECT_EQ(scenario.name, std::filesystem::path(GetParam()).filename());
   EXPECT_EQ(scenario.fleet.file, kSource + "/firmware/fleets/" + scenario.fleet.name + ".toml");
 }
 
@@ -59,14 +59,21 @@ TEST_P(ShippedScenario, ReadsBackFromItsEffectiveFiles) {
 
 std::vector<std::string> ShippedScenarios() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/hil/scenarios"))
-    names.push_back(entry.path().stem().string());
+  const std::filesystem::path folder = kSource + "/hil/scenarios";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    names.push_back(entry.path().lexically_relative(folder).replace_extension().string());
+  }
   std::sort(names.begin(), names.end());
   return names;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(ShippedScenarios()),
-                         [](const testing::TestParamInfo<std::string>& tested) { return tested.param; });
+                         [](const testing::TestParamInfo<std::string>& tested) {
+                           std::string name = tested.param;
+                           std::replace(name.begin(), name.end(), '/', '_');
+                           return name;
+                         });
 
 TEST(Scenario, OfThePaperIsItsSection4) {
   const ScenarioConfig scenario = Load("paper");
