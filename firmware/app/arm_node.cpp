@@ -34,7 +34,8 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
       neighbourhood_(fleet, id_, epoch_ns, start.identity, start.fleet_digest),
       desk_(id_, start.identity, start.fleet_digest),
       bus_watch_(fleet.timing, fleet.arms[index].control.supervisor),
-      controller_(fleet.ControllerConfig(index), initial, start.mode) {
+      controller_(fleet.ControllerConfig(index), initial, start.mode),
+      estimate_counts_(start.mode == StartMode::kRunning) {
   const auto dof = static_cast<Eigen::Index>(joints_.size());
   input_.q_rad = JointVector::Zero(dof);
   input_.dq_rad_s = JointVector::Zero(dof);
@@ -61,7 +62,9 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   message.fleet_digest = fleet_digest_;
   message.agreement = static_cast<int16_t>(controller_.estimator().agreement());
   const double leader_age_s = controller_.estimator().leader_age_s();
-  const bool knows = std::isfinite(leader_age_s) && !controller_.leader_lost();
+  // A board that starts anew among others must not draw them to where it starts.
+  estimate_counts_ = estimate_counts_ || controller_.estimator().in_band();
+  const bool knows = estimate_counts_ && std::isfinite(leader_age_s) && !controller_.leader_lost();
   message.leader_age_s = knows ? static_cast<float>(leader_age_s) : kNoLeader;
   Copy(zeta.x_m, message.x_m);
   Copy(zeta.v_m_s, message.v_m_s);

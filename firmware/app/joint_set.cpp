@@ -39,6 +39,10 @@ JointSet::JointSet(const FleetConfig& fleet, size_t arm)
         .travel_max_rad = sensor.frozen_travel_rad + FeedbackStepOf(drive).position_rad,
         .torque_limit_Nm = drive.torque_limit_Nm,
         .pushed_max_s = sensor.frozen_pushed_s});
+    consistency_.emplace_back(FeedbackConsistency::Limits{
+        .travel_max_rad = sensor.consistent_travel_rad + FeedbackStepOf(drive).position_rad,
+        .speed_noise_rad_s = sensor.velocity_deviation_rad_s[joint],
+        .memory_s = sensor.consistent_s});
   }
 }
 
@@ -146,7 +150,12 @@ void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent
     const bool is_new = newest.sequence != sequence_at_request_[i];
     const bool is_fresh = is_new && IsBelievable(i, newest);
     if (is_new && !is_fresh) nonsense_since_complete_ = true;
-    if (newest.sequence != believed_[i].sequence && IsBelievable(i, newest)) believed_[i] = newest;
+    if (newest.sequence != believed_[i].sequence && IsBelievable(i, newest)) {
+      const double since_s = Seconds(newest.stamp_ns - believed_[i].stamp_ns);
+      if (consistency_[i].Update(newest.position_rad, newest.velocity_rad_s, since_s))
+        input->causes.Add(Cause::kFeedbackNonsense);
+      believed_[i] = newest;
+    }
     const JointSample& sample = believed_[i];
     const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
     const bool in_torque = IsInTorqueMode(*drives_[i]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/app/fleet.h"
+#include "firmware/app/feedback_consistency.h"
 #include "firmware/app/frozen_feedback.h"
 #include "firmware/can/joint_drive.h"
 #include "firmware/core/arm_controller.h"
@@ -58,6 +59,7 @@ class JointSet {
   SupervisorConfig supervisor_;
   std::vector<std::unique_ptr<JointDrive>> drives_;
   std::vector<FrozenFeedback> frozen_;
+  std::vector<FeedbackConsistency> consistency_;
   std::vector<JointSample> believed_;  ///< the last one of each joint
   std::vector<bool> was_in_torque_;
   std::vector<bool> prepared_;

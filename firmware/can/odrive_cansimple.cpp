@@ -15,6 +15,9 @@ using odrive::AxisState;
 /// A heartbeat may have been under way when the drive was armed; the second one after it has seen it.
 constexpr int kHeartbeatsToConfirm = 2;
 
+/// Heartbeats that have to be missing before the drive counts as lost.
+constexpr double kHeartbeatsToLose = 3.5;
+
 }  // namespace
 
 ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
@@ -64,7 +67,12 @@ void ODriveCanSimple::Arm(FrameList* out) {
   heartbeats_since_attempt_ = 0;
 }
 
-void ODriveCanSimple::RequestSample(int64_t /*now_ns*/, FrameList* out) {
+void ODriveCanSimple::RequestSample(int64_t now_ns, FrameList* out) {
+  const double silent_s = 1e-9 * static_cast<double>(now_ns - heartbeat_ns_);
+  if (phase_ == Phase::kTorque && silent_s > kHeartbeatsToLose * config_.odrive.heartbeat_s) {
+    heartbeat_lost_ = true;
+    phase_ = Phase::kEnded;
+  }
   out->Push(odrive::EncodeEncoderRequest(config_.node_id));
 }
 
@@ -93,7 +101,7 @@ Reception ODriveCanSimple::OnFrame(const CanFrame& frame) {
   if (command == odrive::Command::kHeartbeat) {
     odrive::Heartbeat heartbeat;
     if (!odrive::DecodeHeartbeat(frame, config_.node_id, firmware_, &heartbeat)) return Reception::kMalformed;
-    OnHeartbeat(heartbeat);
+    OnHeartbeat(heartbeat, frame.stamp_ns);
     return Reception::kTaken;
   }
   if (command != odrive::Command::kEncoderEstimates) return Reception::kNotMine;
@@ -107,8 +115,9 @@ Reception ODriveCanSimple::OnFrame(const CanFrame& frame) {
   return Reception::kTaken;
 }
 
-void ODriveCanSimple::OnHeartbeat(const odrive::Heartbeat& heartbeat) {
+void ODriveCanSimple::OnHeartbeat(const odrive::Heartbeat& heartbeat, int64_t stamp_ns) {
   heartbeat_ = heartbeat;
+  heartbeat_ns_ = stamp_ns;
   heard_ = true;
   heartbeats_since_attempt_ = std::min(heartbeats_since_attempt_ + 1, heartbeats_to_trip_);
   if (phase_ == Phase::kBringUp && watchdog_ == DriveWatchdog::kUnproved &&
@@ -131,6 +140,7 @@ void ODriveCanSimple::Reset() {
   phase_ = Phase::kBringUp;
   watchdog_ = DriveWatchdog::kUnproved;
   attempts_ = 0;
+  heartbeat_lost_ = false;
 }
 
 DriveState ODriveCanSimple::state() const {
@@ -150,6 +160,7 @@ std::string ODriveCanSimple::Explain() const {
     return "its watchdog is off: it stayed armed in silence; set axis0.config.enable_watchdog and "
            "watchdog_timeout";
   }
+  if (heartbeat_lost_) return "its heartbeat is lost";
   if (heartbeat_.error != 0) return "axis error " + Hexadecimal(heartbeat_.error);
   return watchdog_ == DriveWatchdog::kUnproved ? "has not shown its watchdog yet" : "not in closed loop";
 }

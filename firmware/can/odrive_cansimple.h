@@ -43,13 +43,15 @@ class ODriveCanSimple final : public JointDrive {
   };
 
   void Arm(FrameList* out);
-  void OnHeartbeat(const odrive::Heartbeat& heartbeat);
+  void OnHeartbeat(const odrive::Heartbeat& heartbeat, int64_t stamp_ns);
 
   JointDriveConfig config_;
   odrive::Firmware firmware_;
   int heartbeats_to_trip_;  ///< heartbeats in which a watchdog that is on must have shown
   odrive::Heartbeat heartbeat_;
   bool heard_ = false;
+  bool heartbeat_lost_ = false;  ///< while in torque mode
+  int64_t heartbeat_ns_ = 0;     ///< the last one
   DriveWatchdog watchdog_ = DriveWatchdog::kUnproved;
   Phase phase_ = Phase::kBringUp;
   int attempts_ = 0;  ///< to arm, since the watchdog was last in doubt

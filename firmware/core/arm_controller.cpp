@@ -46,9 +46,9 @@ JointVector ArmController::Step(const ArmInput& in) {
   causes.Set(Cause::kFeedbackNonsense, !in.q_rad.allFinite() || !in.dq_rad_s.allFinite());
   causes.Set(Cause::kNonFiniteTorque, !law_Nm.allFinite() || !gate_.finite());
   causes.Set(Cause::kLeaderLost, LosesTheLeader(in.neighbours));
-  causes |= watch_.Update(
-      {in.q_rad, status_.error_m, status_.sigma_min, gate_.saturated(), Follows(before), estimator_.synced()},
-      h);
+  causes |= watch_.Update({in.q_rad, status_.error_m, status_.sigma_min, gate_.saturated(), Follows(before),
+                           before == ControllerState::kHold, estimator_.synced()},
+                          h);
   const ControllerState state =
       supervisor_.Step({causes, in.request, in.drives_ready, in.drives_enabled, in.samples_good,
                         in.neighbours_good, estimator_.synced(), in.dq_rad_s.cwiseAbs().maxCoeff()},

@@ -13,6 +13,8 @@ struct SensorConfig {
   double frozen_deviations = 4.0;
   double frozen_travel_rad = 0.01;
   double frozen_pushed_s = 0.1;
+  double consistent_travel_rad = 0.05;
+  double consistent_s = 0.1;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -39,6 +41,12 @@ struct SensorConfig {
          "time at its torque limit over which a joint's position may repeat to the bit; longer, and it is "
          "blocked or its feedback is frozen: FAULT"},
         frozen_pushed_s);
+    parameter(
+        {"consistent_travel_rad", "rad", 1e-6, 10,
+         "way that a joint's position may go beyond the integral of its speed, beside the noise of both; "
+         "further, and the feedback makes no sense: FAULT"},
+        consistent_travel_rad);
+    parameter({"consistent_s", "s", 1e-3, 10, "time over which such a way is forgotten"}, consistent_s);
   }
 
   /// Single values spread over `dof` joints.

@@ -33,6 +33,7 @@ enum class Cause : int {
   kBusOff,
   kBusRestarted,
   kArmingTimeout,
+  kNotHolding,
   kNone,
 };
 
@@ -86,7 +87,8 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kFeedbackStale, ControllerState::kFault, false, "feedback stale",
      "a joint's newest sample is older than `timing.feedback_stale_s`"},
     {Cause::kFeedbackNonsense, ControllerState::kFault, false, "feedback makes no sense",
-     "the same, and the drive has sent what no drive would send, or positions that no joint could reach"},
+     "the same, and the drive has sent what no drive would send, or positions that no joint could reach; or "
+     "position and speed of a joint contradict each other (`control.sensor.consistent_*`)"},
     {Cause::kFeedbackFrozen, ControllerState::kFault, false, "feedback frozen",
      "a drive repeats its last sample (`control.sensor.frozen_*`)"},
     {Cause::kBusDown, ControllerState::kFault, false, "bus down", "the CAN interface or its socket is gone"},
@@ -95,6 +97,9 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
      "the CAN controller was restarted after bus-off"},
     {Cause::kArmingTimeout, ControllerState::kFault, false, "drives not enabled in time",
      "not every drive was in torque mode `control.supervisor.arming_max_s` after the operator's arm"},
+    {Cause::kNotHolding, ControllerState::kFault, false, "posture not held",
+     "in HOLD, a joint is `control.supervisor.hold_drift_rad` from where it was "
+     "`control.supervisor.hold_settle_s` after the beginning"},
 }};
 
 constexpr const CauseRule& RuleOf(Cause cause) {

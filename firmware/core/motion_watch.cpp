@@ -16,7 +16,18 @@ CauseSet MotionWatch::Update(const MotionSeen& seen, double elapsed_s) {
   causes.Set(Cause::kSingular, singular_s_ > config_.sigma_min_s);
   causes.Set(Cause::kSaturated, saturated_s_ > config_.saturated_max_s);
   causes.Set(Cause::kJointLimit, CrossesALimit(seen.q_rad));
+  causes.Set(Cause::kNotHolding, LosesItsPosture(seen, elapsed_s));
   return causes;
+}
+
+// Whatever the drives say of speeds: an arm that cannot hold is for the brakes.
+bool MotionWatch::LosesItsPosture(const MotionSeen& seen, double elapsed_s) {
+  holding_s_ = seen.holds ? holding_s_ + elapsed_s : 0.0;
+  if (holding_s_ <= config_.hold_settle_s) {
+    q_held_rad_ = seen.q_rad;
+    return false;
+  }
+  return (seen.q_rad - q_held_rad_).cwiseAbs().maxCoeff() > config_.hold_drift_rad;
 }
 
 // An arm may start beyond a limit, and come back.

@@ -13,6 +13,7 @@ struct MotionSeen {
   double sigma_min = 0.0;  ///< m/rad
   bool saturated = false;  ///< a joint is at its torque limit
   bool follows = false;    ///< in kRun or kDegraded
+  bool holds = false;      ///< in kHold
   bool synced = false;
 };
 
@@ -26,12 +27,15 @@ class MotionWatch {
 
  private:
   bool CrossesALimit(const JointVector& q_rad);
+  bool LosesItsPosture(const MotionSeen& seen, double elapsed_s);
 
   SupervisorConfig config_;
   PlanarArmConfig arm_;
   bool following_ = false;
   double near_s_ = 0.0;  ///< for how long the error has been small
   bool was_within_limits_ = false;
+  double holding_s_ = 0.0;
+  JointVector q_held_rad_;
   double singular_s_ = 0.0;
   double saturated_s_ = 0.0;
 };

@@ -32,6 +32,8 @@ struct SupervisorConfig {
   double stop_ramp_s = 0.3;
   double hold_rate_1_s = 10.0;
   double hold_capture_rad_s = 0.2;
+  double hold_settle_s = 1.0;
+  double hold_drift_rad = 0.2;
   double safe_stop_damping = 0.5;
   double safe_stop_rest_s = 0.1;
   double safe_stop_max_s = 1.5;
@@ -90,6 +92,11 @@ struct SupervisorConfig {
     parameter({"hold_capture_rad_s", "rad/s", 1e-3, 100,
                "HOLD: speed of the fastest joint below which the posture is taken that is held"},
               hold_capture_rad_s);
+    parameter({"hold_settle_s", "s", 0.01, 100, "HOLD: time after which the posture must be held"},
+              hold_settle_s);
+    parameter({"hold_drift_rad", "rad", 1e-3, 100,
+               "HOLD: way of a joint from its posture then that shows that it is not"},
+              hold_drift_rad);
     parameter({"safe_stop_damping", "", 0, 1, "SAFE_STOP: share of K_s that damps"}, safe_stop_damping);
     parameter({"safe_stop_rest_s", "s", 0, 10, "SAFE_STOP: time at rest after which it ends"},
               safe_stop_rest_s);

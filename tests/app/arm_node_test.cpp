@@ -294,6 +294,23 @@ TEST_F(Board, PublishesTheEstimateThatIsValidAtTheTick) {
   EXPECT_EQ(estimate.jerk_m_s3[1], leader_.Jerk(TimeOf(2))[1]) << "as last heard";
 }
 
+// Its estimate is still where it started: neighbours that took it for news of the leader would go there.
+TEST_F(Board, ThatComesUpTellsNobodyOfTheLeaderBeforeItsEstimateIsInItsBand) {
+  ArmNode node(scenario_.fleet, 0, start_.controller, kEpochNs, {});
+  estimate_t estimate{};
+  int64_t k = 0;
+  for (; k < 500 && !node.controller().estimator().in_band(); ++k) {
+    ASSERT_TRUE(Decode(node.EncodeEstimate(NanosecondsOf(k), &buffer_), &estimate));
+    ASSERT_LT(estimate.leader_age_s, 0.0F) << "tick " << k;
+    node.OnMessage({kLeaderChannel, Encode(LeaderAt(k), &buffer_), NanosecondsOf(k)});
+    FrameList frames;
+    node.Step(NanosecondsOf(k), &frames);
+  }
+  EXPECT_GT(k, 5) << "the start is far off";
+  ASSERT_TRUE(Decode(node.EncodeEstimate(NanosecondsOf(k), &buffer_), &estimate));
+  EXPECT_GE(estimate.leader_age_s, 0.0F);
+}
+
 TEST_F(Board, ATickAllocatesNothing) {
   for (int64_t k = 0; k < 3; ++k) Tick(k);
   telemetry_t telemetry{};

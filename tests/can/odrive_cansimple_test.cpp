@@ -197,6 +197,34 @@ TEST_F(ODrive, ADriveThatLeavesClosedLoopByItselfIsNotArmedAgain) {
   }
 }
 
+TEST_F(ODrive, ADriveWhoseHeartbeatIsLostHasLeftTorqueMode) {
+  BringUp();
+  const auto period_ns = static_cast<int64_t>(1e9 * Config().odrive.heartbeat_s);
+  drive_.RequestSample(3 * period_ns, &sent_);
+  EXPECT_EQ(drive_.state(), DriveState::kTorque);
+  drive_.RequestSample(4 * period_ns, &sent_);
+  EXPECT_NE(drive_.state(), DriveState::kTorque);
+  EXPECT_EQ(drive_.Explain(), "its heartbeat is lost");
+  Hear(AxisState::kClosedLoop);
+  EXPECT_NE(drive_.state(), DriveState::kTorque) << "not by itself";
+}
+
+TEST_F(ODrive, IsPreparedBySilenceUnlessAnEarlierMasterHasLeftItArmed) {
+  sent_.Clear();
+  EXPECT_FALSE(drive_.Prepare(0, &sent_));
+  EXPECT_EQ(sent_.size(), 0u) << "any frame would feed the watchdog of a drive that holds a torque";
+  Hear(AxisState::kClosedLoop);
+  EXPECT_FALSE(drive_.Prepare(0, &sent_));
+  ASSERT_EQ(sent_.size(), 1u);
+  AxisState wanted{};
+  EXPECT_TRUE(odrive::DecodeSetAxisState(sent_[0], kNode, &wanted));
+  EXPECT_EQ(wanted, AxisState::kIdle);
+  Hear(AxisState::kIdle);
+  sent_.Clear();
+  EXPECT_TRUE(drive_.Prepare(0, &sent_));
+  EXPECT_EQ(sent_.size(), 0u);
+}
+
 TEST_F(ODrive, DisableAsksForIdleAndEndsTheBringUp) {
   ProveWatchdog();
   ASSERT_EQ(Tick(), 4u);

@@ -13,6 +13,7 @@ MotionSeen Fine() {
           .sigma_min = 0.5,
           .saturated = false,
           .follows = true,
+          .holds = false,
           .synced = true};
 }
 
@@ -65,6 +66,20 @@ TEST_F(Watched, AnArmThatWasStoppedHasToComeToFollowAnew) {
   far.error_m = 0.5;
   far.saturated = true;
   EXPECT_TRUE(StepFor(far, 1.0).empty());
+}
+
+TEST_F(Watched, AnArmThatDriftsWhileItShouldHoldIsForTheBrakes) {
+  MotionSeen held = Fine();
+  held.follows = false;
+  held.holds = true;
+  held.q_rad[0] = 0.4;  // where it came to rest
+  EXPECT_TRUE(StepFor(held, 10.0).empty());
+  held.q_rad[0] = 0.4 + 0.9 * config_.hold_drift_rad;
+  EXPECT_TRUE(StepFor(held, 10.0).empty());
+  held.q_rad[0] = 0.4 + 1.1 * config_.hold_drift_rad;
+  EXPECT_TRUE(StepFor(held, kPeriod_s).Has(Cause::kNotHolding));
+  StepFor(Fine(), kPeriod_s);
+  EXPECT_TRUE(StepFor(held, 0.9 * config_.hold_settle_s).empty()) << "a new hold";
 }
 
 TEST_F(Watched, AJointThatLeavesItsLimitsCountsAndOneThatStartsBeyondThemDoesNot) {
