@@ -53,12 +53,12 @@ JointVector ArmController::Step(const ArmInput& in) {
       supervisor_.Step({causes, in.request, in.drives_ready, in.drives_enabled, in.samples_good,
                         in.neighbours_good, estimator_.synced(), in.dq_rad_s.cwiseAbs().maxCoeff()},
                        h);
-  if (state != before && state == ControllerState::kInit) StartAnew();
 
   // Its gate and the limits come last.
   const JointVector sent_Nm = gate_.Update(TorqueOf(state, law_Nm, in));
   if (auto* robust = std::get_if<RobustLaw>(&law_); robust != nullptr && law_runs && law_Nm.allFinite())
     robust->Applied(law_Nm, sent_Nm);
+  if (state != before && state == ControllerState::kInit) StartAnew();
   status_.state = state;
   status_.tau_Nm = sent_Nm;
   return sent_Nm;
