@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/app/fleet.h"
 #include "firmware/app/feedback_consistency.h"
+#include "firmware/app/fleet.h"
 #include "firmware/app/frozen_feedback.h"
 #include "firmware/can/joint_drive.h"
 #include "firmware/core/arm_controller.h"

@@ -209,9 +209,10 @@ TEST_F(HilProcessTest, EndsByItselfAfterItsSeconds) {
 }
 
 TEST_F(HilProcessTest, HasFaultsOfDrivesAndBusesAndSaysWhatItLeavesOut) {
+  const std::string of_drive = R"({kind="drive",at_s=0.1,arm=4,signal="status",way="off"})";
+  const std::string of_leader = R"({kind="leader_dies",at_s=0.2})";
   Start("hil", {Scenario(), "--seconds", "0.25", "--out", Out(), "--set",
-                "fault=[{kind=\"drive\",at_s=0.1,arm=4,signal=\"status\",way=\"off\"},"
-                "{kind=\"leader_dies\",at_s=0.2}]"});
+                "fault=[" + of_drive + "," + of_leader + "]"});
   EXPECT_EQ(ExitCode(), kExitOk) << Said("hil");
   EXPECT_NE(Said("hil").find("fault leader_dies at 0.2 s is left out"), std::string::npos) << Said("hil");
   EXPECT_EQ(Said("hil").find("fault drive"), std::string::npos) << Said("hil");
