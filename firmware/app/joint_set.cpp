@@ -148,9 +148,10 @@ void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent
     const JointSample& newest = drives_[i]->sample();
     const auto joint = static_cast<Eigen::Index>(i);
     const bool is_new = newest.sequence != sequence_at_request_[i];
-    const bool is_fresh = is_new && IsBelievable(i, newest);
-    if (is_new && !is_fresh) nonsense_since_complete_ = true;
-    if (newest.sequence != believed_[i].sequence && IsBelievable(i, newest)) {
+    const bool believable = IsBelievable(i, newest);
+    const bool is_fresh = is_new && believable;
+    if (is_new && !believable) nonsense_since_complete_ = true;
+    if (newest.sequence != believed_[i].sequence && believable) {
       const double since_s = Seconds(newest.stamp_ns - believed_[i].stamp_ns);
       if (consistency_[i].Update(newest.position_rad, newest.velocity_rad_s, since_s))
         input->causes.Add(Cause::kFeedbackNonsense);

@@ -4,21 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/closed_loop/fault_at_one.h"
+
 namespace armada {
 namespace {
 
 using Turn = BoardProcess::Turn;
-
-// Holds from 1 s to 3 s.
-FaultConfig Fault(FaultKind kind, double value = 0.0, int arm = 1) {
-  FaultConfig fault;
-  fault.kind = kind;
-  fault.at_s = 1.0;
-  fault.until_s = 3.0;
-  fault.arm = arm;
-  fault.value = value;
-  return fault;
-}
 
 BoardProcess Process(const FaultConfig& fault) {
   ScenarioConfig scenario;
@@ -35,7 +26,7 @@ Turn Tick(BoardProcess& process, int64_t k) {
 }
 
 TEST(BoardFaults, ABusThatWasOffIsRestarted) {
-  const BoardFaults faults({Fault(FaultKind::kBusOff)}, 1);
+  const BoardFaults faults({FaultAtOne(FaultKind::kBusOff)}, 1);
   EXPECT_EQ(faults.BusAt(0.99, 0.01), BusStatus::kOk);
   EXPECT_EQ(faults.BusAt(1.0, 0.01), BusStatus::kBusOff);
   EXPECT_EQ(faults.BusAt(2.99, 0.01), BusStatus::kBusOff);
@@ -44,16 +35,16 @@ TEST(BoardFaults, ABusThatWasOffIsRestarted) {
 }
 
 TEST(BoardFaults, ABusThatWasErrorPassiveIsActiveAgain) {
-  const BoardFaults faults({Fault(FaultKind::kErrorPassive)}, 1);
+  const BoardFaults faults({FaultAtOne(FaultKind::kErrorPassive)}, 1);
   EXPECT_EQ(faults.BusAt(2.99, 0.01), BusStatus::kErrorPassive);
   EXPECT_EQ(faults.BusAt(3.0, 0.01), BusStatus::kErrorActive);
   EXPECT_EQ(faults.BusAt(3.01, 0.01), BusStatus::kOk);
 }
 
 TEST(BoardFaults, AreThoseOfTheirArm) {
-  const std::vector<FaultConfig> all = {Fault(FaultKind::kControllerStops),
-                                        Fault(FaultKind::kSlowTick, 0.02, 2),
-                                        Fault(FaultKind::kErrorPassive, 0.0, 2)};
+  const std::vector<FaultConfig> all = {FaultAtOne(FaultKind::kControllerStops),
+                                        FaultAtOne(FaultKind::kSlowTick, 0.02, 2),
+                                        FaultAtOne(FaultKind::kErrorPassive, 0.0, 2)};
   const BoardFaults first(all, 1);
   const BoardFaults second(all, 2);
   EXPECT_TRUE(first.Stops(2.0));
@@ -65,7 +56,7 @@ TEST(BoardFaults, AreThoseOfTheirArm) {
 }
 
 TEST(BoardProcess, WithoutAFaultAnswersEachTickAtOnceWithOrWithoutSamples) {
-  BoardProcess process = Process(Fault(FaultKind::kSlowTick, 0.02, 2));
+  BoardProcess process = Process(FaultAtOne(FaultKind::kSlowTick, 0.02, 2));
   for (int64_t k = 0; k < 300; ++k) {
     EXPECT_TRUE(process.IsOnTime(k));
     EXPECT_EQ(process.Begin(k), Turn::kTick);
@@ -75,7 +66,7 @@ TEST(BoardProcess, WithoutAFaultAnswersEachTickAtOnceWithOrWithoutSamples) {
 }
 
 TEST(BoardProcess, WaitsForLateSamplesAsLongAsItMay) {
-  BoardProcess process = Process(Fault(FaultKind::kBusLoss, 0.5));
+  BoardProcess process = Process(FaultAtOne(FaultKind::kBusLoss, 0.5));
   EXPECT_EQ(process.Begin(150), Turn::kTick);
   EXPECT_FALSE(process.Answers(1.5, false));
   EXPECT_FALSE(process.Answers(1.502, false));
@@ -88,7 +79,7 @@ TEST(BoardProcess, WaitsForLateSamplesAsLongAsItMay) {
 }
 
 TEST(BoardProcess, ThatIsStoppedMissesItsTicks) {
-  BoardProcess process = Process(Fault(FaultKind::kControllerStops));
+  BoardProcess process = Process(FaultAtOne(FaultKind::kControllerStops));
   EXPECT_EQ(Tick(process, 99), Turn::kTick);
   for (int64_t k = 100; k < 300; ++k) {
     EXPECT_FALSE(process.IsOnTime(k));
@@ -102,7 +93,7 @@ TEST(BoardProcess, ThatIsStoppedMissesItsTicks) {
 }
 
 TEST(BoardProcess, ThatIsSlowMissesTheTicksThatItIsBusyIn) {
-  BoardProcess process = Process(Fault(FaultKind::kSlowTick, 0.025));
+  BoardProcess process = Process(FaultAtOne(FaultKind::kSlowTick, 0.025));
   EXPECT_EQ(process.Begin(150), Turn::kTick);
   EXPECT_FALSE(process.Answers(1.5, true));
   EXPECT_EQ(process.Begin(151), Turn::kMissed);
@@ -115,7 +106,7 @@ TEST(BoardProcess, ThatIsSlowMissesTheTicksThatItIsBusyIn) {
 }
 
 TEST(BoardProcess, ThatIsKilledStartsAnew) {
-  BoardProcess process = Process(Fault(FaultKind::kControllerRestarts));
+  BoardProcess process = Process(FaultAtOne(FaultKind::kControllerRestarts));
   EXPECT_EQ(Tick(process, 99), Turn::kTick);
   EXPECT_EQ(Tick(process, 100), Turn::kNone);
   EXPECT_FALSE(process.running());
@@ -131,7 +122,7 @@ TEST(BoardProcess, ThatIsKilledStartsAnew) {
 }
 
 TEST(BoardProcess, KilledInATickNeverAnswersIt) {
-  FaultConfig fault = Fault(FaultKind::kControllerDies);
+  FaultConfig fault = FaultAtOne(FaultKind::kControllerDies);
   fault.at_s = 1.502;
   BoardProcess process = Process(fault);
   EXPECT_EQ(process.Begin(150), Turn::kTick);

@@ -4,21 +4,12 @@
 
 #include "firmware/link/channels.h"
 #include "firmware/link/seal.h"
+#include "tests/closed_loop/fault_at_one.h"
 
 namespace armada {
 namespace {
 
 constexpr int64_t kTick = 200;  // 2 s, when every fault here holds
-
-FaultConfig Fault(FaultKind kind, double value = 0.0, int arm = 1) {
-  FaultConfig fault;
-  fault.kind = kind;
-  fault.at_s = 1.0;
-  fault.until_s = 3.0;
-  fault.arm = arm;
-  fault.value = value;
-  return fault;
-}
 
 LinkFaults Link(const FaultConfig& fault) {
   ScenarioConfig scenario;
@@ -39,7 +30,7 @@ std::vector<int> TicksThatArrive(const LinkFaults& link, int64_t k) {
 }
 
 TEST(LinkFaults, PartitionCutsANodeOffBothWays) {
-  const LinkFaults link = Link(Fault(FaultKind::kPartition, 0.0, 2));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kPartition, 0.0, 2));
   EXPECT_TRUE(link.Loses(0, 2, kTick));
   EXPECT_TRUE(link.Loses(2, 4, kTick));
   EXPECT_FALSE(link.Loses(0, 4, kTick));
@@ -48,7 +39,7 @@ TEST(LinkFaults, PartitionCutsANodeOffBothWays) {
 }
 
 TEST(LinkFaults, LossTakesItsShareOfEachLinkOnItsOwn) {
-  const LinkFaults link = Link(Fault(FaultKind::kLinkLoss, 0.3));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kLinkLoss, 0.3));
   int lost = 0;
   int alike = 0;
   for (int64_t k = 100; k < 300; ++k) {
@@ -60,7 +51,7 @@ TEST(LinkFaults, LossTakesItsShareOfEachLinkOnItsOwn) {
 }
 
 TEST(LinkFaults, ReorderedMessagesComeInPairsTheNewerFirst) {
-  const LinkFaults link = Link(Fault(FaultKind::kReorder));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kReorder));
   EXPECT_EQ(link.history(), 1);
   EXPECT_EQ(TicksThatArrive(link, 50), (std::vector<int>{50}));
   EXPECT_EQ(TicksThatArrive(link, 200), (std::vector<int>{}));
@@ -68,13 +59,13 @@ TEST(LinkFaults, ReorderedMessagesComeInPairsTheNewerFirst) {
 }
 
 TEST(LinkFaults, ReplayedMessagesComeBesideTheNewOnes) {
-  const LinkFaults link = Link(Fault(FaultKind::kReplay, 0.5));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kReplay, 0.5));
   EXPECT_EQ(link.history(), 50);
   EXPECT_EQ(TicksThatArrive(link, 200), (std::vector<int>{200, 150}));
 }
 
 TEST(LinkFaults, JunkComesAtItsRate) {
-  const LinkFaults link = Link(Fault(FaultKind::kJunk, 1550.0));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kJunk, 1550.0));
   int messages = 0;
   for (int64_t k = 100; k < 200; ++k) {
     link.Deliver(
@@ -85,7 +76,7 @@ TEST(LinkFaults, JunkComesAtItsRate) {
 
 // Before each message comes one that says something else under its seal; the check of seals tells them apart.
 TEST(LinkFaults, AForgedMessageHasTheSealOfAnother) {
-  const LinkFaults link = Link(Fault(FaultKind::kForge, 0.1, 0));
+  const LinkFaults link = Link(FaultAtOne(FaultKind::kForge, 0.1, 0));
   const LinkIdentity identity{.key = {1, 2, 3}, .epoch = 1};
   Sealer sealer(identity, kLeaderSender);
   SealCheck check(identity.key, kLeaderSender);
