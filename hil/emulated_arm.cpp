@@ -12,9 +12,6 @@ namespace {
 // Events closer together than this are one: below it, differences of times are rounding.
 constexpr double kSameInstant_s = 1e-9;
 
-// With all drives off for so long the brakes have closed.
-constexpr double kBrake_s = 0.1;
-
 }  // namespace
 
 EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
@@ -70,7 +67,7 @@ void EmulatedArm::BrakeIfOff() {
   const bool on =
       std::any_of(drives_.begin(), drives_.end(), [](const auto& drive) { return drive->ProducesTorque(); });
   if (on) on_s_ = clock_s_;
-  if (!released_ || clock_s_ - on_s_ < kBrake_s) return;
+  if (!released_ || clock_s_ - on_s_ < config_.brake_s) return;
   released_ = false;
   plant_.dq_rad_s = {};
 }

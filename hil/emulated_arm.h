@@ -13,8 +13,8 @@ namespace armada {
 
 /// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
 /// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
-/// let go with the start speed. With every drive off for 0.1 s the brakes close again. Faults of its drives
-/// and of its bus are the scenario's.
+/// let go with the start speed. With every drive off for plant.brake_s the brakes close again. Faults of its
+/// drives and of its bus are the scenario's.
 class EmulatedArm {
  public:
   /// The bench is switched on at `start_s` <= 0. `leader` (may be null) is needed by adversarial
@@ -34,6 +34,8 @@ class EmulatedArm {
   /// The joints' speed left every bound; the plant is frozen where it was.
   bool diverged() const { return diverged_; }
   bool released() const { return released_; }
+  /// Whether a joint's drive has its power stage on.
+  bool IsOn(size_t joint) const { return drives_[joint]->ProducesTorque(); }
 
  private:
   JointTruth TruthOf(size_t joint) const;

@@ -30,7 +30,8 @@ enum RandomPurpose : uint64_t {
   kNetworkStream,
   kSensorStream,
   kFleetStream,
-  kFaultStream
+  kFaultStream,
+  kTrialStream
 };
 
 }  // namespace armada

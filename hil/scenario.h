@@ -69,6 +69,7 @@ struct StartConfig {
   double theta_hat_max = 5.0;
   double near_leader_m = 0.1;
   std::string learned = "none";
+  StartMode mode = StartMode::kRunning;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -90,6 +91,9 @@ struct StartConfig {
          "warm start: folder with what arms have learnt, arm_<id>.toml, in place of theta_hat(0); relative "
          "to this file"},
         learned);
+    parameter({"mode", "", 0, 0,
+               "how the boards start: running, or monitor, from where an operator arms and starts them"},
+              mode);
   }
 };
 
@@ -205,6 +209,7 @@ struct CriterionConfig {
 struct PlantConfig {
   double step_s = 0.001;
   double diverged_rad_s = 1e4;
+  double brake_s = 0.1;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -212,6 +217,23 @@ struct PlantConfig {
     parameter(
         {"diverged_rad_s", "rad/s", 1, 1e9, "joint speed at which an arm counts as diverged and is frozen"},
         diverged_rad_s);
+    parameter({"brake_s", "s", 0, 10, "time with all drives off after which the brakes have closed"},
+              brake_s);
+  }
+};
+
+/// What an operator asks of boards at a time of the run.
+struct OperatorConfig {
+  double at_s = -1.0;
+  int arm = 0;
+  Request request = Request::kNone;
+
+  template <class Visitor>
+  void Visit(Visitor& parameter) {
+    parameter({"at_s", "s", 0, 1e6, "time at which the operator asks"}, at_s);
+    parameter({"arm", "", 0, kMaxArms, "id of the arm; 0: every arm"}, arm);
+    parameter({"request", "", 0, 0, "what of it, as by `armada ctl`: arm, start, hold, reset, estop"},
+              request);
   }
 };
 
@@ -230,6 +252,7 @@ struct ScenarioConfig {
   PlantConfig plant;
   CriterionConfig criterion;
   std::vector<FaultConfig> faults;
+  std::vector<OperatorConfig> operations;
   std::vector<std::optional<ArmInitialState>> learned;  ///< from start.learned, by arm; empty: none
 
   template <class Visitor>
@@ -246,6 +269,8 @@ struct ScenarioConfig {
     parameter.Table("plant", plant);
     parameter.Table("criterion", criterion);
     parameter.List({"fault", "something that goes wrong at a time of the run"}, faults);
+    parameter.List({"operator", "what an operator asks at a time of the run; in virtual time only"},
+                   operations);
   }
 };
 

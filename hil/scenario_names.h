@@ -19,6 +19,12 @@ constexpr auto EnumNames(StartKind) {
   return std::to_array<std::pair<StartKind, std::string_view>>({{kBox, "box"}, {kNearLeader, "near_leader"}});
 }
 
+constexpr auto EnumNames(StartMode) {
+  using enum StartMode;
+  return std::to_array<std::pair<StartMode, std::string_view>>(
+      {{kRunning, "running"}, {kMonitor, "monitor"}});
+}
+
 constexpr auto EnumNames(DisturbanceKind) {
   using enum DisturbanceKind;
   return std::to_array<std::pair<DisturbanceKind, std::string_view>>({{kNone, "none"},
@@ -32,6 +38,17 @@ constexpr auto EnumNames(CriterionKind) {
   using enum CriterionKind;
   return std::to_array<std::pair<CriterionKind, std::string_view>>(
       {{kTracking, "tracking"}, {kAgreement, "agreement"}});
+}
+
+constexpr auto EnumNames(Request) {
+  using enum Request;
+  return std::to_array<std::pair<Request, std::string_view>>(
+      {{kArm, "arm"}, {kStart, "start"}, {kHold, "hold"}, {kReset, "reset"}, {kEstop, "estop"}});
+}
+
+/// An operator who asks for nothing means nothing.
+inline bool IsRequired(const ParameterInfo&, Request request) {
+  return request == Request::kNone;
 }
 
 constexpr auto EnumNames(FaultKind) {

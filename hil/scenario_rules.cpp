@@ -171,6 +171,17 @@ void CheckStanding(const ScenarioConfig& scenario, const ConfigCursor& at, Error
     Report(at, "given arms that lose the leader, but there is none", errors);
 }
 
+void CheckOperations(const ScenarioConfig& scenario, const ConfigCursor& at, Errors* errors) {
+  for (size_t i = 0; i < scenario.operations.size(); ++i) {
+    const int id = scenario.operations[i].arm;
+    if (id == 0 || scenario.fleet.IndexOf(id) >= 0) continue;
+    Report(at.Element(i).At("arm"),
+           "given " + std::to_string(id) + ", allowed are the arms " + AllIds(scenario.fleet) +
+               ", and 0, all of them",
+           errors);
+  }
+}
+
 // Averaging never leaves the box of the starts: with all of it in reach, so is the point that is agreed on.
 void CheckAgreementInReach(const ScenarioConfig& scenario, const ConfigCursor& root, Errors* errors) {
   const TaskVector& centre = scenario.start.zeta_x_centre_m;
@@ -222,6 +233,7 @@ void CheckScenarioWithFleet(const ScenarioConfig& scenario, const ConfigCursor& 
   CheckStanding(scenario, root.At("criterion.standing"), errors);
   CheckArms(scenario.criterion.excused, scenario.fleet, root.At("criterion.excused"), errors);
   CheckFaults(scenario, root.At("fault"), errors);
+  CheckOperations(scenario, root.At("operator"), errors);
   if (scenario.plant.step_s > scenario.fleet.timing.period_s) {
     Report(root.At("plant.step_s"),
            "given " + ValueText(scenario.plant.step_s) +

@@ -7,6 +7,7 @@
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
 #include "host/ablate/ablate_command.h"
+#include "host/campaign/campaign_command.h"
 #include "host/can/can_command.h"
 #include "host/check.h"
 #include "host/ctl/ctl_command.h"
@@ -144,6 +145,7 @@ int main(int argc, char** argv) {
   spy_command->add_flag("--jar-only", spy.jar_only, "make the jar of message types and print its path");
   spy_command->callback([&] { code = RunSpyCommand(spy); });
 
+  AddCampaignCommand(&app, &code);
   AddCanCommand(&app, &code);
   AddCtlCommand(&app, &code);
   AddFleetCommand(&app, &code);

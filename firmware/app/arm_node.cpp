@@ -7,8 +7,6 @@ namespace armada {
 namespace {
 
 constexpr float kNoLeader = -1.0f;  // in a message: no leader state is behind this estimate
-/// A drive's own ramp to rest takes no longer; then its power is taken away.
-constexpr int64_t kQuickStopNs = 500'000'000;
 
 double Seconds(int64_t duration_ns) {
   return 1e-9 * static_cast<double>(duration_ns);
@@ -30,9 +28,10 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
       fleet_digest_(start.fleet_digest),
       hold_with_neighbours_(fleet.arms[index].control.supervisor.fleet_stop == FleetStop::kHold),
       good_ticks_needed_(fleet.arms[index].control.supervisor.good_samples),
+      quick_stop_s_(fleet.arms[index].control.supervisor.quick_stop_s),
       joints_(fleet, index),
       neighbourhood_(fleet, id_, epoch_ns, start.identity, start.fleet_digest),
-      desk_(id_, start.identity, start.fleet_digest),
+      desk_(id_, start.identity, start.fleet_digest, fleet.link.command_age_max_s),
       bus_watch_(fleet.timing, fleet.arms[index].control.supervisor),
       controller_(fleet.ControllerConfig(index), initial, start.mode),
       estimate_counts_(start.mode == StartMode::kRunning) {
@@ -83,7 +82,9 @@ std::span<const uint8_t> ArmNode::EncodeReply(int64_t tick_ns, MessageBuffer* bu
   return SealIfKeyed(sealer_, reply_channel_, Encode(*reply, buffer), buffer);
 }
 
+// Requests feed the watchdogs of some drives. One that gets no torques must not be kept from stopping.
 void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
+  if (bus_watch_.loses_torques()) return joints_.SkipSamples(now_ns);
   joints_.RequestSamples(now_ns, state(), out);
 }
 
@@ -153,7 +154,7 @@ void ArmNode::StopDrives(ControllerState before, int64_t tick_ns, FrameList* out
     fault_ns_ = tick_ns;
     was_at_rest_ = before == ControllerState::kSafeStop;
   }
-  if (was_at_rest_ || tick_ns - fault_ns_ > kQuickStopNs) return joints_.Disable(out);
+  if (was_at_rest_ || Seconds(tick_ns - fault_ns_) > quick_stop_s_) return joints_.Disable(out);
   joints_.QuickStop(out);
 }
 

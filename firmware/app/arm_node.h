@@ -89,6 +89,7 @@ class ArmNode {
   int64_t fleet_digest_;
   bool hold_with_neighbours_;
   int good_ticks_needed_;
+  double quick_stop_s_;
   JointSet joints_;
   Neighbourhood neighbourhood_;
   OperatorDesk desk_;

@@ -32,10 +32,10 @@ void BusWatch::OnSent(bool all) {
 
 void BusWatch::OnTick(int64_t tick_ns, double ready_s, int64_t missed) {
   new_.Set(Cause::kTickOverrun, ready_s > supervisor_.overrun_share * timing_.period_s);
-  new_.Set(Cause::kTicksMissed, missed >= kMostMissedInARow);
-  for (int64_t i = 0; i < missed && i < kMostMissedInASecond; ++i) {
+  new_.Set(Cause::kTicksMissed, missed >= supervisor_.missed_in_a_row);
+  for (int64_t i = 0; i < missed && i < supervisor_.missed_in_a_second; ++i) {
     missed_at_ns_[next_missed_] = tick_ns;
-    next_missed_ = (next_missed_ + 1) % missed_at_ns_.size();
+    next_missed_ = (next_missed_ + 1) % static_cast<size_t>(supervisor_.missed_in_a_second);
   }
 }
 

@@ -24,20 +24,20 @@ class BusWatch {
   /// The causes of this tick.
   CauseSet Take(int64_t tick_ns);
 
+  /// Whether the torques of the last tick were not sent.
+  bool loses_torques() const { return unsent_in_a_row_ > 0; }
+
   /// After a reset by the operator.
   void Reset() { *this = BusWatch(timing_, supervisor_); }
 
  private:
-  static constexpr int kMostMissedInARow = 2;
-  static constexpr int kMostMissedInASecond = 5;
-
   TimingConfig timing_;
   SupervisorConfig supervisor_;
   CauseSet new_;
   bool error_passive_ = false;
   double error_passive_s_ = 0.0;
   int unsent_in_a_row_ = 0;
-  std::array<int64_t, kMostMissedInASecond> missed_at_ns_{};  ///< the last ones; 0: none
+  std::array<int64_t, SupervisorConfig::kMaxMissedInASecond> missed_at_ns_{};  ///< the last ones; 0: none
   size_t next_missed_ = 0;
 };
 

@@ -10,7 +10,7 @@ class FeedbackConsistency {
  public:
   struct Limits {
     double travel_max_rad;     ///< most that may stand in the sum
-    double speed_noise_rad_s;  ///< standard deviation of a speed
+    double speed_noise_rad_s;  ///< of a speed, and what of noise is allowed in the sum
     double memory_s;
   };
 
@@ -25,7 +25,7 @@ class FeedbackConsistency {
       beyond_rad_ = kept * beyond_rad_ + moved_rad - expected_rad;
       // Independent noise of the speeds: a variance of (s h)^2 a sample over memory / 2 h samples.
       const double noise_rad = limits_.speed_noise_rad_s * std::sqrt(0.5 * elapsed_s * limits_.memory_s);
-      allowed_rad_ = limits_.travel_max_rad + kDeviations * noise_rad;
+      allowed_rad_ = limits_.travel_max_rad + noise_rad;
     }
     position_rad_ = position_rad;
     velocity_rad_s_ = velocity_rad_s;
@@ -33,8 +33,6 @@ class FeedbackConsistency {
   }
 
  private:
-  static constexpr double kDeviations = 6.0;
-
   Limits limits_;
   double position_rad_ = std::nan("");
   double velocity_rad_s_ = 0.0;

@@ -18,6 +18,7 @@ struct LcmLinkConfig {
   bool shared_clock = false;
   double age_max_s = 0.05;
   double plausible_step = 1.5;
+  double command_age_max_s = 1.0;
   ClockOffset::Config clock;
   SilenceWatch::Config silence;
 
@@ -42,6 +43,9 @@ struct LcmLinkConfig {
          "a state is dropped when it is further from what the sender's last one predicts than this many "
          "times what (A2) and (1.9) allow; predictive estimator only, the others chatter by more"},
         plausible_step);
+    parameter({"command_age_max_s", "s", 0.05, 10,
+               "an operator's command counts while what it quotes of the board is younger"},
+              command_age_max_s);
     parameter.Table("clock", clock);
     parameter.Table("silence", silence);
   }

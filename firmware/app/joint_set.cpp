@@ -9,9 +9,6 @@
 namespace armada {
 namespace {
 
-// Of the largest speed: what a position may move by between two samples.
-constexpr double kBelievableSpeeds = 1.5;
-
 double Seconds(int64_t duration_ns) {
   return 1e-9 * static_cast<double>(duration_ns);
 }
@@ -41,7 +38,7 @@ JointSet::JointSet(const FleetConfig& fleet, size_t arm)
         .pushed_max_s = sensor.frozen_pushed_s});
     consistency_.emplace_back(FeedbackConsistency::Limits{
         .travel_max_rad = sensor.consistent_travel_rad + FeedbackStepOf(drive).position_rad,
-        .speed_noise_rad_s = sensor.velocity_deviation_rad_s[joint],
+        .speed_noise_rad_s = sensor.consistent_deviations * sensor.velocity_deviation_rad_s[joint],
         .memory_s = sensor.consistent_s});
   }
 }
@@ -101,6 +98,11 @@ void JointSet::RequestSamples(int64_t now_ns, ControllerState state, FrameList* 
   }
 }
 
+void JointSet::SkipSamples(int64_t now_ns) {
+  request_ns_ = now_ns;
+  for (size_t i = 0; i < drives_.size(); ++i) sequence_at_request_[i] = drives_[i]->sample().sequence;
+}
+
 Reception JointSet::OnFrame(const CanFrame& frame) {
   for (const auto& drive : drives_) {
     const Reception reception = drive->OnFrame(frame);
@@ -126,8 +128,7 @@ bool JointSet::IsBelievable(size_t joint, const JointSample& sample) {
   const JointSample& last = believed_[joint];
   if (last.sequence == 0) return true;
   const double since_s = std::max(timing_.period_s, Seconds(sample.stamp_ns - last.stamp_ns));
-  return std::abs(sample.position_rad - last.position_rad) <=
-         kBelievableSpeeds * supervisor_.speed_max_rad_s * since_s;
+  return std::abs(sample.position_rad - last.position_rad) <= supervisor_.speed_max_rad_s * since_s;
 }
 
 void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent_Nm, ArmInput* input) {

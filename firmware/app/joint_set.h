@@ -35,6 +35,8 @@ class JointSet {
 
   /// Asks for samples; not of drives that are being found or enabled.
   void RequestSamples(int64_t now_ns, ControllerState state, FrameList* out);
+  /// A tick in which none are asked for.
+  void SkipSamples(int64_t now_ns);
   Reception OnFrame(const CanFrame& frame);
   bool SamplesComplete() const;
 

@@ -165,7 +165,8 @@ void Neighbourhood::ReadAt(int64_t tick_ns, Neighbours* neighbours) const {
     Neighbour& neighbour = neighbours->list[i];
     neighbour = source.neighbour;
     neighbour.weight = source.weight[topology];
-    neighbour.silent = source.silence.IsSilent(tick_ns);
+    const bool never_came = !neighbour.heard && Seconds(tick_ns - epoch_ns_) > link_.silence.first_s;
+    neighbour.silent = never_came || source.silence.IsSilent(tick_ns);
     if (!neighbour.heard) continue;
     neighbour.age_s = AgeOf(source, source.stamp_ns, tick_ns);
     neighbour.leader_age_s = source.leader_age_s + neighbour.age_s;

@@ -5,8 +5,6 @@
 namespace armada {
 namespace {
 
-constexpr int64_t kFreshNs = 1'000'000'000;
-
 bool IsSame(const reply_t& reply, const command_t& command) {
   return reply.command_stamp_ns == command.stamp_ns && reply.command_sequence == command.sequence &&
          reply.request == command.request;
@@ -14,8 +12,9 @@ bool IsSame(const reply_t& reply, const command_t& command) {
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(int arm_id, const std::optional<LinkIdentity>& identity, int64_t fleet_digest)
-    : arm_id_(arm_id), fleet_digest_(fleet_digest) {
+OperatorDesk::OperatorDesk(int arm_id, const std::optional<LinkIdentity>& identity, int64_t fleet_digest,
+                           double age_max_s)
+    : arm_id_(arm_id), fleet_digest_(fleet_digest), age_max_ns_(static_cast<int64_t>(1e9 * age_max_s)) {
   if (identity) seal_.emplace(identity->key, kOperatorSender);
 }
 
@@ -53,7 +52,7 @@ Request OperatorDesk::TakeRequest(int64_t tick_ns) {
   if (request != Request::kEstop) {
     const int64_t age_ns = tick_ns - command.heard_stamp_ns;
     // Estimates are stamped for the end of the tick in which they are made.
-    const bool fresh = age_ns < kFreshNs && age_ns > -kFreshNs && command.heard_stamp_ns > quoted_ns_;
+    const bool fresh = age_ns < age_max_ns_ && age_ns > -age_max_ns_ && command.heard_stamp_ns > quoted_ns_;
     if (!fresh) refused_here_ |= Bit(Refusal::kStale);
     if (command.fleet_digest != fleet_digest_) refused_here_ |= Bit(Refusal::kFleetDiffers);
     if (fresh) quoted_ns_ = command.heard_stamp_ns;

@@ -10,11 +10,12 @@
 namespace armada {
 
 /// Where a board takes an operator's commands. A command counts once, and only if it quotes a stamp that this
-/// board has sent within the last second and later than the one before: what was recorded earlier, before a
-/// restart or a moment ago, is worth nothing. An e-stop always counts.
+/// board has sent within the last `age_max_s` and later than the one before: what was recorded earlier,
+/// before a restart or a moment ago, is worth nothing. An e-stop always counts.
 class OperatorDesk {
  public:
-  OperatorDesk(int arm_id, const std::optional<LinkIdentity>& identity, int64_t fleet_digest);
+  OperatorDesk(int arm_id, const std::optional<LinkIdentity>& identity, int64_t fleet_digest,
+               double age_max_s);
 
   /// Takes a message if it is a genuine command for this arm.
   void OnMessage(const LcmMessage& message);
@@ -32,6 +33,7 @@ class OperatorDesk {
  private:
   int arm_id_;
   int64_t fleet_digest_;
+  int64_t age_max_ns_;
   std::optional<SealCheck> seal_;  ///< of a sender that was never heard: order is the desk's matter
   std::optional<command_t> pending_;
   Refusals refused_here_ = 0;

@@ -15,9 +15,6 @@ using odrive::AxisState;
 /// A heartbeat may have been under way when the drive was armed; the second one after it has seen it.
 constexpr int kHeartbeatsToConfirm = 2;
 
-/// Heartbeats that have to be missing before the drive counts as lost.
-constexpr double kHeartbeatsToLose = 3.5;
-
 }  // namespace
 
 ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
@@ -69,7 +66,7 @@ void ODriveCanSimple::Arm(FrameList* out) {
 
 void ODriveCanSimple::RequestSample(int64_t now_ns, FrameList* out) {
   const double silent_s = 1e-9 * static_cast<double>(now_ns - heartbeat_ns_);
-  if (phase_ == Phase::kTorque && silent_s > kHeartbeatsToLose * config_.odrive.heartbeat_s) {
+  if (phase_ == Phase::kTorque && silent_s > config_.odrive.heartbeat_timeout_s) {
     heartbeat_lost_ = true;
     phase_ = Phase::kEnded;
   }

@@ -5,12 +5,15 @@ namespace armada {
 /// Settings of an ODrive that its CANSimple does not tell.
 struct ODriveConfig {
   double heartbeat_s = 0.1;
+  double heartbeat_timeout_s = 0.35;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
     parameter({"heartbeat_s", "s", 0.01, 10,
                "period of the drive's heartbeat, as it is set there (heartbeat_rate_ms)"},
               heartbeat_s);
+    parameter({"heartbeat_timeout_s", "s", 0.01, 60, "time without one after which the drive counts as lost"},
+              heartbeat_timeout_s);
   }
 };
 

@@ -21,7 +21,7 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
       law_(MakeLaw(config, arm_, initial)),
       hold_law_(config.control.supervisor),
       watch_(config.control.supervisor, config.arm),
-      supervisor_(config.control.supervisor, start, config.timing.period_s),
+      supervisor_(config.control.supervisor, start),
       gate_(config.torque_limit_Nm) {
   status_.x_m = TaskVector::Zero(PlanarArm::kTaskDim);
   status_.zeta = initial.zeta;

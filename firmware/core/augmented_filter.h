@@ -15,6 +15,7 @@ struct SensorConfig {
   double frozen_pushed_s = 0.1;
   double consistent_travel_rad = 0.05;
   double consistent_s = 0.1;
+  double consistent_deviations = 6.0;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -47,6 +48,9 @@ struct SensorConfig {
          "further, and the feedback makes no sense: FAULT"},
         consistent_travel_rad);
     parameter({"consistent_s", "s", 1e-3, 10, "time over which such a way is forgotten"}, consistent_s);
+    parameter({"consistent_deviations", "", 1, 100,
+               "and what noise of the speed may add to it, in standard deviations"},
+              consistent_deviations);
   }
 
   /// Single values spread over `dof` joints.

@@ -19,6 +19,7 @@ enum class Cause : int {
   kLeaderLost,
   kSingular,
   kSaturated,
+  kNotFollowing,
   kFleetStop,
   kOperatorHold,
   kTorquesUnsent,
@@ -61,7 +62,9 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kErrorPassiveLong, ControllerState::kHold, false, "bus error-passive for long",
      "the same for `control.supervisor.error_passive_max_s`"},
     {Cause::kTicksMissed, ControllerState::kHold, false, "ticks missed",
-     "two ticks in a row were missed, or five within a second"},
+     "`control.supervisor.missed_in_a_row` ticks were missed, or `control.supervisor.missed_in_a_second` "
+     "within "
+     "a second"},
     {Cause::kLeaderLost, ControllerState::kHold, false, "leader lost",
      "nobody is heard who knows of the leader, or the news of it are older than `estimator.age_max_s`"},
     {Cause::kSingular, ControllerState::kHold, false, "near a singularity",
@@ -70,6 +73,8 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kSaturated, ControllerState::kHold, false, "torque saturated",
      "once the arm follows, a joint is at its torque limit and |x - x_hat| above "
      "`control.supervisor.following_error_m` for `control.supervisor.saturated_max_s` without a break"},
+    {Cause::kNotFollowing, ControllerState::kHold, false, "does not come to follow",
+     "an arm that knows the leader has not come to follow it in `control.supervisor.follow_max_s`"},
     {Cause::kFleetStop, ControllerState::kHold, false, "a neighbour has stopped",
      "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, with `control.supervisor.fleet_stop = "
      "\"hold\"`"},

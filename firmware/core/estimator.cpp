@@ -133,7 +133,8 @@ void Estimator::Coast(double step_s, double leader_age_s) {
   }
 }
 
-// Who is heard with older news than those in use has no part in the estimate, nor in the agreement.
+// Who is heard with older news than those in use has no part in the estimate, nor in the agreement; who is
+// dead has none, either.
 void Estimator::UpdateAgreement(const Neighbours& neighbours, double used_up_to_s) {
   // What nobody confirms does not count.
   const int confirmed = coasted_s_ > 0.0 ? 0 : 1;
@@ -141,7 +142,8 @@ void Estimator::UpdateAgreement(const Neighbours& neighbours, double used_up_to_
   for (int j = 0; j < neighbours.count; ++j) {
     const Neighbour& neighbour = neighbours.list[static_cast<size_t>(j)];
     const bool heard = CountsAsHeard(neighbour);
-    if (neighbour.weight <= 0.0 || (heard && neighbour.leader_age_s > used_up_to_s)) continue;
+    if (neighbour.weight <= 0.0 || neighbour.silent || (heard && neighbour.leader_age_s > used_up_to_s))
+      continue;
     agreement_ = std::min(agreement_, heard ? neighbour.agreement + 1 : 0);
   }
   ticks_out_of_band_ = in_band_ ? 0 : ticks_out_of_band_ + 1;

@@ -64,8 +64,8 @@ struct Neighbour {
   double leader_age_s =
       0.0;  ///< age now of the newest leader state behind it; 0 for the leader, infinite for none
   TaskVector jerk_m_s3 = TaskVector::Zero(kMaxTaskDim);  ///< the leader's, as passed on; 0 where not known
-  bool silent = false;                                   ///< for longer than its link's losses explain
-  bool stopped = false;                                  ///< it says that it has stopped
+  bool silent = false;   ///< for longer than its link's losses explain, or ever since the start
+  bool stopped = false;  ///< it says that it has stopped
 };
 
 struct Neighbours {

@@ -33,6 +33,7 @@ class MotionWatch {
   PlanarArmConfig arm_;
   bool following_ = false;
   double near_s_ = 0.0;  ///< for how long the error has been small
+  double away_s_ = 0.0;  ///< for how long it has tried to come to follow
   bool was_within_limits_ = false;
   double holding_s_ = 0.0;
   JointVector q_held_rad_;

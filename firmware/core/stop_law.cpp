@@ -6,10 +6,6 @@
 namespace armada {
 namespace {
 
-/// The posture is taken after this many ramps even if the joints still move: a weight that is not known well
-/// must not pull them on for ever.
-constexpr double kRampsToHold = 3.0;
-
 // -K s at the end of the period: H (s+ - s) / h = -K s+. Explicit where theta_hat is of no physical arm.
 JointVector ImplicitFeedback(const JointMatrix& H_hat, const JointVector& K_Nms_rad, const JointVector& s,
                              double h_s) {
@@ -48,7 +44,7 @@ JointVector HoldLaw::Torque(const PlanarArm& arm, const JointVector& K_s_Nms_rad
   const double ramp_s = config_.stop_ramp_s;
   const double left = std::max(0.0, 1.0 - elapsed_s_ / ramp_s);
   const bool slow = in.dq_rad_s.cwiseAbs().maxCoeff() < config_.hold_capture_rad_s;
-  const bool over = elapsed_s_ > ramp_s && (slow || elapsed_s_ > kRampsToHold * ramp_s);
+  const bool over = elapsed_s_ > ramp_s && (slow || elapsed_s_ > config_.hold_capture_max_s);
   if (q_hold_rad_.size() == 0 && over) q_hold_rad_ = in.q_rad;
 
   JointVector s = in.dq_rad_s - left * dq_start_rad_s_;

@@ -30,13 +30,8 @@ ControllerState Supervisor::Step(const SupervisorInput& in, double elapsed_s) {
     break;
   }
 
-  if (state_ == ControllerState::kDegraded) {
-    if (worst != Cause::kNone) cause_ = worst;
-    halves_gains_ = RuleOf(cause_).halves_gains;
-  } else {
-    halves_gains_ = false;
-  }
-  const double ramp = config_.law_ramp_s > period_s_ ? period_s_ / config_.law_ramp_s : 1.0;
+  if (state_ == ControllerState::kDegraded && worst != Cause::kNone) cause_ = worst;
+  const double ramp = config_.law_ramp_s > elapsed_s ? elapsed_s / config_.law_ramp_s : 1.0;
   law_share_ = Follows(state_) ? std::min(1.0, law_share_ + ramp) : 0.0;
   return state_;
 }

@@ -11,16 +11,21 @@ enum class FleetStop {
 };
 
 struct SupervisorConfig {
+  static constexpr int kMaxMissedInASecond = 32;
+
   double feedback_late_s = 0.015;
   double overrun_share = 0.8;
   double error_passive_max_s = 1.0;
+  int missed_in_a_row = 2;
+  int missed_in_a_second = 5;
   double sigma_min = 0.03;
   double sigma_min_s = 0.05;
   double saturated_max_s = 0.5;
   double following_error_m = 0.02;
   double following_s = 0.5;
+  double follow_max_s = 15.0;
   double joint_limit_margin_rad = 0.05;
-  double speed_max_rad_s = 30.0;
+  double speed_max_rad_s = 45.0;
   FleetStop fleet_stop = FleetStop::kCarryOn;
   int good_samples = 50;
   double rest_rad_s = 0.05;
@@ -32,11 +37,13 @@ struct SupervisorConfig {
   double stop_ramp_s = 0.3;
   double hold_rate_1_s = 10.0;
   double hold_capture_rad_s = 0.2;
+  double hold_capture_max_s = 0.9;
   double hold_settle_s = 1.0;
   double hold_drift_rad = 0.2;
   double safe_stop_damping = 0.5;
   double safe_stop_rest_s = 0.1;
   double safe_stop_max_s = 1.5;
+  double quick_stop_s = 0.5;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -48,6 +55,11 @@ struct SupervisorConfig {
     parameter({"error_passive_max_s", "s", 0, 100,
                "time for which a CAN controller may be error-passive before the arm holds"},
               error_passive_max_s);
+    parameter({"missed_in_a_row", "ticks", 1, 100, "ticks missed one after the other at which the arm holds"},
+              missed_in_a_row);
+    parameter({"missed_in_a_second", "ticks", 1, kMaxMissedInASecond,
+               "ticks missed within a second at which the arm holds"},
+              missed_in_a_second);
     parameter({"sigma_min", "m/rad", 0, 10,
                "smallest singular value of J below which a following arm holds; 0: never"},
               sigma_min);
@@ -61,12 +73,14 @@ struct SupervisorConfig {
         {"following_error_m", "m", 0, 100, "an arm counts as following once |x - x_hat| has been below this"},
         following_error_m);
     parameter({"following_s", "s", 0, 100, "for this long"}, following_s);
+    parameter({"follow_max_s", "s", 0.1, 1e6,
+               "time within which an arm that knows the leader must have come to follow it"},
+              follow_max_s);
     parameter({"joint_limit_margin_rad", "rad", 0, 10,
                "way beyond q_min_rad or q_max_rad from which on a joint has crossed its limit"},
               joint_limit_margin_rad);
     parameter({"speed_max_rad_s", "rad/s", 1e-2, 1e3,
-               "largest speed that a joint can have: a position that moves by more than 1.5 times this over "
-               "the time since the last one is not believed"},
+               "speed that no joint can have: a position that moves faster is not believed"},
               speed_max_rad_s);
     parameter({"fleet_stop", "", 0, 0,
                "when a neighbour stops: carry_on (while there is a path to the leader), hold"},
@@ -92,6 +106,11 @@ struct SupervisorConfig {
     parameter({"hold_capture_rad_s", "rad/s", 1e-3, 100,
                "HOLD: speed of the fastest joint below which the posture is taken that is held"},
               hold_capture_rad_s);
+    parameter(
+        {"hold_capture_max_s", "s", 0.01, 100,
+         "HOLD: time after which it is taken even so: a weight that is not known well must not pull the "
+         "joints on for ever"},
+        hold_capture_max_s);
     parameter({"hold_settle_s", "s", 0.01, 100, "HOLD: time after which the posture must be held"},
               hold_settle_s);
     parameter({"hold_drift_rad", "rad", 1e-3, 100,
@@ -101,6 +120,10 @@ struct SupervisorConfig {
     parameter({"safe_stop_rest_s", "s", 0, 10, "SAFE_STOP: time at rest after which it ends"},
               safe_stop_rest_s);
     parameter({"safe_stop_max_s", "s", 0.01, 60, "SAFE_STOP: longest time"}, safe_stop_max_s);
+    parameter(
+        {"quick_stop_s", "s", 0, 60,
+         "FAULT of a moving arm: time for the drives' own ramp to rest; then their power is taken away"},
+        quick_stop_s);
   }
 };
 
@@ -256,8 +279,7 @@ inline constexpr std::array<Transition, 25> kTransitions = {{
 /// does is in kCauseRules and kTransitions; here are only the times. Fixed memory.
 class Supervisor {
  public:
-  Supervisor(const SupervisorConfig& config, StartMode start, double period_s)
-      : config_(config), start_(start), period_s_(period_s) {}
+  Supervisor(const SupervisorConfig& config, StartMode start) : config_(config), start_(start) {}
 
   /// One tick, `elapsed_s` after the last one.
   ControllerState Step(const SupervisorInput& in, double elapsed_s);
@@ -268,7 +290,7 @@ class Supervisor {
   /// Why the request of the last tick was refused; 0 when it was not.
   Refusals refusals() const { return refusals_; }
   /// Whether kDegraded halves the gains.
-  bool halves_gains() const { return halves_gains_; }
+  bool halves_gains() const { return state_ == ControllerState::kDegraded && RuleOf(cause_).halves_gains; }
   /// The law's share of the torque in kRun and kDegraded; the rest is damping and gravity.
   double law_share() const { return law_share_; }
   /// Whether neighbours are to know that this arm has stopped.
@@ -284,12 +306,10 @@ class Supervisor {
 
   SupervisorConfig config_;
   StartMode start_;
-  double period_s_;
   ControllerState state_ = ControllerState::kInit;
   Cause cause_ = Cause::kNone;
   Refusals refusals_ = 0;
   uint32_t taken_ = 0;
-  bool halves_gains_ = false;
   double law_share_ = 0.0;
   double in_state_s_ = 0.0;
   double clear_s_ = 0.0;      ///< since the last cause

@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace armada {
-namespace {
-
-// Messages over which the loss is averaged.
-constexpr double kMemory = 50.0;
-// A loss above it is no link.
-constexpr double kMostLoss = 0.9;
-
-}  // namespace
 
 void SilenceWatch::OnMessage(int64_t sequence, int64_t stamp_ns, int64_t arrival_ns) {
   const int64_t count = sequence - sequence_;
@@ -19,8 +11,8 @@ void SilenceWatch::OnMessage(int64_t sequence, int64_t stamp_ns, int64_t arrival
   if (heard_ && count > 0 && elapsed_ns > 0) {
     const auto sent = static_cast<double>(count);
     period_s_ = 1e-9 * static_cast<double>(elapsed_ns) / sent;
-    const double kept = std::pow(1.0 - 1.0 / kMemory, sent);
-    loss_ = std::min(kMostLoss, kept * loss_ + (1.0 - kept) * (sent - 1.0) / sent);
+    const double kept = std::pow(1.0 - 1.0 / config_.memory, sent);
+    loss_ = std::min(config_.loss_max, kept * loss_ + (1.0 - kept) * (sent - 1.0) / sent);
     // loss^n = chance
     const double by_chance = loss_ > 0.0 ? std::log(config_.chance) / std::log(loss_) : 0.0;
     allowed_ = std::max(static_cast<double>(config_.messages), by_chance);

@@ -11,6 +11,9 @@ class SilenceWatch {
   struct Config {
     int messages = 8;
     double chance = 1e-9;
+    double memory = 50.0;
+    double loss_max = 0.9;
+    double first_s = 1.0;
 
     template <class Visitor>
     void Visit(Visitor& parameter) {
@@ -21,6 +24,13 @@ class SilenceWatch {
       parameter({"chance", "", 1e-15, 0.1,
                  "and as many more as it takes for its losses to explain that with less than this chance"},
                 chance);
+      parameter({"memory", "messages", 1, 1e6, "number over which the losses of a link are averaged"},
+                memory);
+      parameter({"loss_max", "", 0, 0.99, "largest share of losses that is believed; above it is no link"},
+                loss_max);
+      parameter({"first_s", "s", 0.01, 1e6,
+                 "time after its start after which a board holds a neighbour silent that it has never heard"},
+                first_s);
     }
   };
 

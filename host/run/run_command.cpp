@@ -203,10 +203,11 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     const std::string id = std::to_string(arm.id);
     std::vector<std::string> board;
     if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
-    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--running",
-                               "--epoch-ns", epoch, "--seconds", Seconds(), "--initial",
-                               In("initial_" + id + ".toml"), "--learned", LearnedFile(In("learned"), arm.id),
-                               "--state", In("state"), "--json", In("arm_" + id + ".json")});
+    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
+                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"),
+                               "--learned", LearnedFile(In("learned"), arm.id), "--state", In("state"),
+                               "--json", In("arm_" + id + ".json")});
+    if (scenario_.start.mode == StartMode::kRunning) board.emplace_back("--running");
     if (!Start(group, "arm " + id, std::move(board), error)) return false;
   }
   return scenario_.leader.kind == LeaderKind::kNone ||
@@ -311,6 +312,10 @@ int RunRunCommand(const RunOptions& options) {
   }
   if (!scenario->network.lost.empty()) {
     std::cerr << "armada run: network.lost is of virtual time, which `armada sim` runs\n";
+    return kExitUsage;
+  }
+  if (!scenario->operations.empty()) {
+    std::cerr << "armada run: [[operator]] is of virtual time; here `armada ctl` asks\n";
     return kExitUsage;
   }
   std::string error;

@@ -27,6 +27,23 @@ JointVector JointsOf(const PlanarPlant& plant) {
   return Eigen::Map<const Eigen::VectorXd>(plant.q_rad.data(), plant.dof());
 }
 
+/// While one lives, a board's own code runs.
+class BoardTime {
+ public:
+  BoardTime(SimulationWatch* watch, size_t arm) : watch_(watch), arm_(arm) {
+    if (watch_ != nullptr) watch_->Enter(arm_);
+  }
+  BoardTime(const BoardTime&) = delete;
+  BoardTime& operator=(const BoardTime&) = delete;
+  ~BoardTime() {
+    if (watch_ != nullptr) watch_->Leave(arm_);
+  }
+
+ private:
+  SimulationWatch* watch_;
+  size_t arm_;
+};
+
 /// A key as secret as the seed: what is tried here is the check of the seals, not the key.
 LinkIdentity IdentityOf(uint64_t seed) {
   LinkIdentity identity{.key = {}, .epoch = 1};
@@ -42,19 +59,21 @@ double Rms(double sum_squares, int64_t count) {
 
 }  // namespace
 
-Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
+Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed, SimulationWatch* watch)
     : scenario_(scenario),
       seed_(seed),
       period_s_(scenario.fleet.timing.period_s),
       period_ns_(static_cast<int64_t>(std::llround(period_s_ * 1e9))),
       epoch_ns_(1'000'000'000),
       fleet_digest_(FleetDigest(scenario_.fleet)),
-      network_(scenario_, seed) {
+      network_(scenario_, seed),
+      watch_(watch) {
   if (scenario_.leader.kind != LeaderKind::kNone) leader_.emplace(scenario_.leader);
   if (NeedsSeals(scenario_.faults)) {
     identity_ = IdentityOf(seed);
     leader_sealer_.emplace(*identity_, kLeaderSender);
   }
+  if (!scenario_.operations.empty()) operator_.emplace(scenario_, fleet_digest_, identity_);
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
   arms_.reserve(scenario_.fleet.arms.size());
   for (size_t i = 0; i < scenario_.fleet.arms.size(); ++i) {
@@ -72,7 +91,7 @@ Simulation::Simulation(const ScenarioConfig& scenario, uint64_t seed)
 // Started anew, a controller has forgotten all, and nobody but the operator lets it move the arm.
 ArmNode Simulation::MakeNode(size_t index, int64_t epoch_ns, uint64_t starts) const {
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
-  BoardStart board{starts == 1 ? StartMode::kRunning : StartMode::kMonitor, fleet_digest_, identity_};
+  BoardStart board{starts == 1 ? scenario_.start.mode : StartMode::kMonitor, fleet_digest_, identity_};
   if (board.identity) board.identity->epoch = starts;
   return {scenario_.fleet, index, DrawStart(scenario_, index, seed_, leader).controller, epoch_ns, board};
 }
@@ -94,7 +113,7 @@ void Simulation::BringUp() {
   for (int64_t k = -std::llround(scenario_.fleet.timing.bring_up_s / period_s_); k < 0; ++k) {
     for (Arm& arm : arms_) {
       to_drives_.Clear();
-      arm.node.BringUp(NanosecondsOf(k), &to_drives_);
+      if (scenario_.start.mode == StartMode::kRunning) arm.node.BringUp(NanosecondsOf(k), &to_drives_);
       ToDrives(arm, TimeOf(k));
       ToBoard(arm, NanosecondsOf(k));
       arm.bench.AdvanceTo(TimeOf(k + 1), &to_board_);
@@ -104,13 +123,17 @@ void Simulation::BringUp() {
 }
 
 void Simulation::ToDrives(Arm& arm, double t_s) {
-  for (const CanFrame& frame : to_drives_) arm.bench.OnFrame(t_s, frame, &to_board_);
+  for (const CanFrame& frame : to_drives_) {
+    if (watch_ != nullptr) watch_->OnFrame(IndexOf(arm), t_s, frame);
+    arm.bench.OnFrame(t_s, frame, &to_board_);
+  }
   to_drives_.Clear();
 }
 
 void Simulation::ToBoard(Arm& arm, int64_t t_ns) {
   for (CanFrame frame : to_board_) {
     frame.stamp_ns = t_ns;
+    const BoardTime board(watch_, IndexOf(arm));
     arm.node.OnFrame(frame);
   }
   to_board_.Clear();
@@ -131,11 +154,13 @@ void Simulation::Exchange(int64_t k) {
     }
   }
   for (size_t i = 0; i < arms_.size(); ++i) {
+    std::span<const uint8_t> payload;
     if (arms_[i].process.IsOnTime(k)) {
-      network_.Send(i + 1, k, arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k)));
-    } else {
-      network_.Send(i + 1, k, {});
+      const BoardTime board(watch_, i);
+      payload = arms_[i].node.EncodeEstimate(NanosecondsOf(k), network_.BufferFor(i + 1, k));
     }
+    network_.Send(i + 1, k, payload);
+    if (watch_ != nullptr && !payload.empty()) watch_->OnEstimate(i, TimeOf(k), payload);
   }
 }
 
@@ -168,12 +193,17 @@ void Simulation::Control(Arm& arm, size_t index, int64_t k) {
   if (turn == BoardProcess::Turn::kNone) return;
   if (turn == BoardProcess::Turn::kStart) {
     // As a restarted service: its time 0 comes timing.bring_up_s later.
+    transitions_before_ |= arm.node.controller().supervisor().transitions_taken();
     arm.node = MakeNode(index, NanosecondsOf(arm.process.first_tick()), arm.process.starts());
   }
-  if (turn == BoardProcess::Turn::kTick) arm.node.RequestSamples(tick_ns, &to_drives_);
+  if (turn == BoardProcess::Turn::kTick) {
+    const BoardTime board(watch_, index);
+    arm.node.RequestSamples(tick_ns, &to_drives_);
+  }
   ToDrives(arm, TimeOf(k));
   ToBoard(arm, tick_ns);
   network_.Deliver(index, k, tick_ns, &arm.node);  // a socket keeps messages for a process that gets no time
+  if (operator_) operator_->Deliver(TimeOf(k), tick_ns, &arm.node);
   Answer(arm, TimeOf(k));
 }
 
@@ -181,7 +211,10 @@ void Simulation::Answer(Arm& arm, double t_s) {
   if (!arm.process.Answers(t_s, arm.node.SamplesComplete())) return;
   const int64_t k = arm.process.tick();
   const BoardFaults& faults = arm.process.faults();
-  arm.node.Step(NanosecondsOf(k), &to_drives_);
+  {
+    const BoardTime board(watch_, IndexOf(arm));
+    arm.node.Step(NanosecondsOf(k), &to_drives_);
+  }
   const BusStatus bus = faults.BusAt(TimeOf(k), period_s_);
   const bool sent = !faults.RefusesTorques(t_s) && bus != BusStatus::kBusOff && bus != BusStatus::kDown;
   if (!sent) to_drives_.Clear();
@@ -271,7 +304,9 @@ void Simulation::AdvancePlants(int64_t k) {
       arm.bench.AdvanceTo(t_s, &to_board_);
       ToBoard(arm, epoch_ns_ + std::llround(t_s * 1e9));
       Answer(arm, t_s);
-      arm.record.Update(t_s, (TipPosition(arm.bench) - target).norm());
+      const double error_m = (TipPosition(arm.bench) - target).norm();
+      arm.record.Update(t_s, error_m);
+      if (watch_ != nullptr) watch_->OnMoment(IndexOf(arm), t_s, arm.bench, error_m);
     }
   }
 }
@@ -287,6 +322,12 @@ bool Simulation::WriteLearned(const std::string& folder, std::string* error) con
     }
   }
   return true;
+}
+
+uint32_t Simulation::TransitionsTaken() const {
+  uint32_t taken = transitions_before_;
+  for (const Arm& arm : arms_) taken |= arm.node.controller().supervisor().transitions_taken();
+  return taken;
 }
 
 RunMetrics Simulation::Result() const {

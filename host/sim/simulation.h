@@ -7,8 +7,10 @@
 #include "hil/emulated_arm.h"
 #include "hil/tracking_record.h"
 #include "host/sim/board_process.h"
+#include "host/sim/simulation_watch.h"
 #include "host/sim/trace_writer.h"
 #include "host/sim/virtual_network.h"
+#include "host/sim/virtual_operator.h"
 #include "host/subtask_record.h"
 
 namespace armada {
@@ -18,7 +20,8 @@ namespace armada {
 /// and seed give the same bytes.
 class Simulation {
  public:
-  Simulation(const ScenarioConfig& scenario, uint64_t seed);
+  /// `watch` (may be null) outlives the object.
+  Simulation(const ScenarioConfig& scenario, uint64_t seed, SimulationWatch* watch = nullptr);
 
   /// Runs to the end. `trace` may be null.
   RunMetrics Run(TraceWriter* trace);
@@ -26,6 +29,9 @@ class Simulation {
   /// What each arm without a fault has learnt of its dynamics, into `folder`/arm_<id>.toml: the start.learned
   /// of another run. False with *error set.
   bool WriteLearned(const std::string& folder, std::string* error) const;
+
+  /// One bit for each of kTransitions: taken by some board so far.
+  uint32_t TransitionsTaken() const;
 
  private:
   struct Arm {
@@ -53,6 +59,7 @@ class Simulation {
   /// Frames from the drives to the board, and what it sends to the drives.
   void ToBoard(Arm& arm, int64_t t_ns);
   void ToDrives(Arm& arm, double t_s);
+  size_t IndexOf(const Arm& arm) const { return static_cast<size_t>(&arm - arms_.data()); }
   void Observe(int64_t k);
   void Trace(int64_t k, TraceWriter* trace);
   void AdvancePlants(int64_t k);
@@ -71,7 +78,9 @@ class Simulation {
   int64_t fleet_digest_;
   std::optional<LeaderPath> leader_;
   VirtualNetwork network_;
+  SimulationWatch* watch_;
   std::optional<LinkIdentity> identity_;  ///< of the leader; each arm's has its own epoch
+  std::optional<VirtualOperator> operator_;
   std::optional<Sealer> leader_sealer_;
   std::vector<Arm> arms_;
   FrameList to_board_;
@@ -79,6 +88,7 @@ class Simulation {
   int64_t leader_sequence_ = 0;
   double leader_sent_s_ = 0.0;
   double estimate_spread_m_ = 0.0;
+  uint32_t transitions_before_ = 0;  ///< taken by boards that were started anew since
 };
 
 }  // namespace armada

@@ -36,7 +36,7 @@ class Desk : public testing::Test {
   }
 
   MessageBuffer buffer_{};
-  OperatorDesk desk_{3, std::nullopt, kDigest};
+  OperatorDesk desk_{3, std::nullopt, kDigest, 1.0};
 };
 
 TEST_F(Desk, TakesACommandOnceAndAnswersIt) {
@@ -100,7 +100,7 @@ TEST_F(Desk, AnEstopCountsAlwaysAndIsNotOvertaken) {
 }
 
 TEST_F(Desk, WithAKeyBelievesTheOperatorOnly) {
-  OperatorDesk desk(3, LinkIdentity{kKey, 1}, kDigest);
+  OperatorDesk desk(3, LinkIdentity{kKey, 1}, kDigest, 1.0);
   const command_t command = Command(Request::kEstop);
   Hear(command, &desk);
   EXPECT_EQ(desk.rejected(), 1);

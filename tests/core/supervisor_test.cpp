@@ -39,7 +39,7 @@ class Supervised : public testing::Test {
   }
   /// From the start to `state`, the way an operator takes, or by a cause.
   void Reach(State state) {
-    supervisor_ = Supervisor(config_, StartMode::kMonitor, kPeriod_s);
+    supervisor_ = Supervisor(config_, StartMode::kMonitor);
     SupervisorInput off = Quiet();
     off.drives_enabled = false;
     if (state == State::kInit) return;
@@ -59,7 +59,7 @@ class Supervised : public testing::Test {
   }
 
   SupervisorConfig config_;
-  Supervisor supervisor_{config_, StartMode::kMonitor, kPeriod_s};
+  Supervisor supervisor_{config_, StartMode::kMonitor};
 };
 
 TEST_F(Supervised, AnOperatorTakesItFromInitToRunAndBack) {
@@ -240,13 +240,13 @@ TEST_F(Supervised, TheLawTakesOverGraduallyAfterAStart) {
 }
 
 TEST_F(Supervised, AnEmulatedArmMayStartRunningButOnlyOnce) {
-  supervisor_ = Supervisor(config_, StartMode::kRunning, kPeriod_s);
+  supervisor_ = Supervisor(config_, StartMode::kRunning);
   EXPECT_EQ(Step(Quiet()), State::kRun);
   EXPECT_EQ(supervisor_.law_share(), 1.0);
   Step(With(Cause::kBusOff));
   Step(Asking(Request::kReset));
   EXPECT_EQ(StepFor(Quiet(), 1.0), State::kMonitor);
-  supervisor_ = Supervisor(config_, StartMode::kRunning, kPeriod_s);
+  supervisor_ = Supervisor(config_, StartMode::kRunning);
   SupervisorInput off = Quiet();
   off.drives_enabled = false;
   EXPECT_EQ(Step(off), State::kFault) << "drives that are not enabled";
@@ -292,7 +292,7 @@ TEST_F(Supervised, EveryTransitionIsTaken) {
     }
   }
   for (const bool enabled : {true, false}) {
-    supervisor_ = Supervisor(config_, StartMode::kRunning, kPeriod_s);
+    supervisor_ = Supervisor(config_, StartMode::kRunning);
     SupervisorInput in = Quiet();
     in.drives_enabled = enabled;
     Step(in);

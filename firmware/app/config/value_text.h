@@ -27,7 +27,7 @@ inline std::string ValueText(std::same_as<int> auto value) {
 
 template <NamedEnum Enum>
 std::string ValueText(Enum value) {
-  return ValueText(NameOf(value));
+  return ValueText(std::string_view(NameOf(value)));
 }
 
 template <class Element>
