@@ -61,9 +61,10 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   message.fleet_digest = fleet_digest_;
   message.agreement = static_cast<int16_t>(controller_.estimator().agreement());
   const double leader_age_s = controller_.estimator().leader_age_s();
-  // A board that starts anew among others must not draw them to where it starts.
-  estimate_counts_ = estimate_counts_ || controller_.estimator().in_band();
-  const bool knows = estimate_counts_ && std::isfinite(leader_age_s) && !controller_.leader_lost();
+  // A board that starts anew among others, or hears of the leader again after it has lost it, must not draw
+  // them to where it is.
+  estimate_counts_ = !controller_.leader_lost() && (estimate_counts_ || controller_.estimator().in_band());
+  const bool knows = estimate_counts_ && std::isfinite(leader_age_s);
   message.leader_age_s = knows ? static_cast<float>(leader_age_s) : kNoLeader;
   Copy(zeta.x_m, message.x_m);
   Copy(zeta.v_m_s, message.v_m_s);

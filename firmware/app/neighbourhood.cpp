@@ -49,7 +49,7 @@ void Neighbourhood::ListenTo(const FleetConfig& fleet, int arm_id, size_t topolo
     sources_.push_back({.arm_id = arm_id,
                         .seal = std::nullopt,
                         .clock = ClockOffset(fleet.link.clock),
-                        .silence = SilenceWatch(fleet.link.silence)});
+                        .silence = SilenceWatch(fleet.link.silence, epoch_ns_)});
     source = sources_.end() - 1;
     if (identity) source->seal.emplace(identity->key, arm_id);
   }
@@ -132,11 +132,12 @@ bool Neighbourhood::Take(Source& source, const Message& message, int64_t arrival
 
 // Whether a state can follow the sender's last one. A leader within (A2), and (1.9) while it is in contact,
 // leave a prediction by no more than beta over the time; after a time without news (1.9) makes up for that
-// time, too. Once the last state is too old to judge by, or of a former life, any is taken.
+// time, too. Once the last state is so old that the sender has been given up, or of a former life, any is taken:
+// what goes on being impossible is a leader lost, not one that has moved.
 bool Neighbourhood::IsPlausible(const Source& source, const Zeta& zeta, int64_t stamp_ns) const {
   if (estimator_.kind != EstimatorKind::kPredictive || !source.neighbour.heard) return true;
   const double since_s = Seconds(stamp_ns - source.stamp_ns);
-  if (since_s <= 0.0 || since_s > link_.age_max_s) return true;
+  if (since_s <= 0.0 || since_s > estimator_.age_max_s) return true;
   const Zeta expected = Taylor(source.neighbour.zeta, since_s);
   const double allowed_s =
       link_.plausible_step * (since_s + std::min(source.leader_age_s, estimator_.age_max_s));
@@ -165,8 +166,7 @@ void Neighbourhood::ReadAt(int64_t tick_ns, Neighbours* neighbours) const {
     Neighbour& neighbour = neighbours->list[i];
     neighbour = source.neighbour;
     neighbour.weight = source.weight[topology];
-    const bool never_came = !neighbour.heard && Seconds(tick_ns - epoch_ns_) > link_.silence.first_s;
-    neighbour.silent = never_came || source.silence.IsSilent(tick_ns);
+    neighbour.silent = source.silence.IsSilent(tick_ns);
     if (!neighbour.heard) continue;
     neighbour.age_s = AgeOf(source, source.stamp_ns, tick_ns);
     neighbour.leader_age_s = source.leader_age_s + neighbour.age_s;

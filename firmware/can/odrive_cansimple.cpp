@@ -25,8 +25,8 @@ ODriveCanSimple::ODriveCanSimple(const JointDriveConfig& config)
 
 /// There is nothing to configure, and the watchdog shows only on an armed axis. One that an earlier master
 /// has left armed is disarmed.
-bool ODriveCanSimple::Prepare(int64_t /*now_ns*/, FrameList* out) {
-  if (!heard_) return false;
+bool ODriveCanSimple::Prepare(int64_t now_ns, FrameList* out) {
+  if (!heard_ || IsSilent(now_ns)) return false;
   const bool armed = heartbeat_.state == AxisState::kClosedLoop;
   if (armed) out->Push(odrive::EncodeSetAxisState(config_.node_id, AxisState::kIdle));
   return phase_ == Phase::kBringUp && watchdog_ != DriveWatchdog::kOff && !armed;
@@ -65,12 +65,15 @@ void ODriveCanSimple::Arm(FrameList* out) {
 }
 
 void ODriveCanSimple::RequestSample(int64_t now_ns, FrameList* out) {
-  const double silent_s = 1e-9 * static_cast<double>(now_ns - heartbeat_ns_);
-  if (phase_ == Phase::kTorque && silent_s > config_.odrive.heartbeat_timeout_s) {
+  if (phase_ == Phase::kTorque && IsSilent(now_ns)) {
     heartbeat_lost_ = true;
     phase_ = Phase::kEnded;
   }
   out->Push(odrive::EncodeEncoderRequest(config_.node_id));
+}
+
+bool ODriveCanSimple::IsSilent(int64_t now_ns) const {
+  return 1e-9 * static_cast<double>(now_ns - heartbeat_ns_) > config_.odrive.heartbeat_timeout_s;
 }
 
 void ODriveCanSimple::CommandTorque(double tau_Nm, FrameList* out) {

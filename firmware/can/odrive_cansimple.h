@@ -43,6 +43,7 @@ class ODriveCanSimple final : public JointDrive {
   };
 
   void Arm(FrameList* out);
+  bool IsSilent(int64_t now_ns) const;
   void OnHeartbeat(const odrive::Heartbeat& heartbeat, int64_t stamp_ns);
 
   JointDriveConfig config_;

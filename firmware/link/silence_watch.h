@@ -28,21 +28,25 @@ class SilenceWatch {
                 memory);
       parameter({"loss_max", "", 0, 0.99, "largest share of losses that is believed; above it is no link"},
                 loss_max);
-      parameter({"first_s", "s", 0.01, 1e6,
-                 "time after its start after which a board holds a neighbour silent that it has never heard"},
-                first_s);
+      parameter(
+          {"first_s", "s", 0.01, 1e6,
+           "time for which a board waits for a neighbour's first message, and then for its second, before it "
+           "holds it silent"},
+          first_s);
     }
   };
 
-  explicit SilenceWatch(const Config& config) : config_(config), allowed_(config.messages) {}
+  /// The board listens from `start_ns` on.
+  SilenceWatch(const Config& config, int64_t start_ns)
+      : config_(config), arrival_ns_(start_ns), allowed_(config.messages) {}
 
   /// A message that was taken as new. Its sequence and stamp are the sender's, of which the differences tell
   /// what was lost and how often it sends.
   void OnMessage(int64_t sequence, int64_t stamp_ns, int64_t arrival_ns);
 
   bool IsSilent(int64_t now_ns) const {
-    return heard_ && period_s_ > 0.0 &&
-           1e-9 * static_cast<double>(now_ns - arrival_ns_) > allowed_ * period_s_;
+    const double silent_s = 1e-9 * static_cast<double>(now_ns - arrival_ns_);
+    return silent_s > (period_s_ > 0.0 ? allowed_ * period_s_ : config_.first_s);
   }
 
  private:
@@ -50,7 +54,7 @@ class SilenceWatch {
   bool heard_ = false;
   int64_t sequence_ = 0;
   int64_t stamp_ns_ = 0;
-  int64_t arrival_ns_ = 0;
+  int64_t arrival_ns_;     ///< of the last message; before the first, the start
   double period_s_ = 0.0;  ///< of the sender; 0 until two messages have come
   double loss_ = 0.0;      ///< share of messages lost, of late
   double allowed_;         ///< missing messages that are not yet silence

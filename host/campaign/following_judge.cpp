@@ -29,10 +29,17 @@ double FastestJoint_rad_s(const PlanarPlant& plant) {
 }
 
 bool IsDriven(const EmulatedArm& bench) {
-  for (size_t i = 0; i < static_cast<size_t>(bench.plant().dof()); ++i) {
-    if (bench.IsOn(i)) return true;
+  const PlanarPlant::Joints torque_Nm = bench.Torque();
+  return std::any_of(torque_Nm.begin(), torque_Nm.end(), [](double tau_Nm) { return tau_Nm != 0.0; });
+}
+
+/// Arms may follow a leader to where it says it is, on both axes.
+double LargestLie_m(const ScenarioConfig& trial) {
+  double lie_m = 0.0;
+  for (const FaultConfig& fault : trial.faults) {
+    if (fault.kind == FaultKind::kLeaderJumps) lie_m += std::sqrt(2.0) * std::abs(fault.value);
   }
-  return false;
+  return lie_m;
 }
 
 }  // namespace
@@ -40,6 +47,7 @@ bool IsDriven(const EmulatedArm& bench) {
 FollowingJudge::FollowingJudge(const ScenarioConfig& trial, Violations* violations)
     : facts_(trial),
       criterion_(trial.criterion),
+      far_m_(trial.criterion.diverged_error_m + LargestLie_m(trial)),
       starts_running_(trial.start.mode == StartMode::kRunning),
       violations_(violations) {
   const std::vector<bool> reached = facts_.Reached([&](size_t arm) { return !facts_.IsTouched(arm); });
@@ -95,13 +103,14 @@ void FollowingJudge::OnMoment(size_t index, double t_s, const EmulatedArm& bench
   arm.off_track = off_track;
 
   const double speed_rad_s = FastestJoint_rad_s(bench.plant());
-  const bool wild = t_s > kSettled_s && error_m > criterion_.diverged_error_m &&
+  const bool wild = t_s > kSettled_s && error_m > far_m_ &&
                     speed_rad_s > criterion_.standing_speed_max_rad_s && IsDriven(bench);
   const bool near = error_m <= criterion_.error_max_m || arm.near_s > kNear_s;
   arm.near_s = near ? arm.near_s + kMoment_s : 0.0;
   const double allowed_s = arm.near_s > kNear_s ? kWildMax_s : kWildMax_s + arm.follow_max_s;
   const bool was_wild = arm.wild_s > allowed_s;
-  arm.wild_s = wild ? arm.wild_s + kMoment_s : 0.0;
+  // Whoever is driven to and fro stands for a moment now and then.
+  arm.wild_s = std::max(0.0, arm.wild_s + (wild ? kMoment_s : -kMoment_s));
   if (arm.wild_s > allowed_s && !was_wild) {
     Complain(Invariant::kNoWildMotion, t_s, arm,
              "driven for " + std::to_string(allowed_s) + " s, " + std::to_string(error_m) +

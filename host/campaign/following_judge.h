@@ -36,6 +36,7 @@ class FollowingJudge {
 
   TrialFacts facts_;
   CriterionConfig criterion_;
+  double far_m_;
   bool starts_running_;
   std::vector<Arm> arms_;
   std::vector<bool> told_;  ///< of each arm: somebody brings it the leader's state

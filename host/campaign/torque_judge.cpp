@@ -14,8 +14,8 @@ constexpr uint32_t kSetInputTorque = 0x0E;
 // What the emulation's grid of time adds, and rounding the motor's torque to a float.
 constexpr double kGrid_s = 0.002;
 constexpr double kRounding = 1.0 + 1e-6;
-// Power into a joint that is no drive's doing: rounding.
-constexpr double kNoPower_W = 1e-6;
+// Power that drives no arm: what a drive's own stop puts into a joint that it holds at rest.
+constexpr double kNoPower_W = 0.1;
 
 bool IsODrive(DriveProfile profile) {
   return profile == DriveProfile::kODriveCanSimple || profile == DriveProfile::kODriveCanSimpleV05;

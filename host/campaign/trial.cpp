@@ -67,6 +67,16 @@ Range RangeOf(const FaultConfig& fault) {
   }
 }
 
+/// Half of the fleets have the drives of the file, the others drives of some family.
+void DrawDrives(Dice* dice, FleetConfig* fleet) {
+  if (dice->Comes(0.5)) return;
+  constexpr auto kProfiles = EnumNames(DriveProfile{});
+  const DriveProfile profile = dice->OneOf(kProfiles).first;
+  for (ArmEntry& arm : fleet->arms) {
+    for (JointDriveConfig& drive : arm.joints) drive.profile = profile;
+  }
+}
+
 double DrawValue(const FaultConfig& fault, Dice* dice) {
   if (*ValueOf(fault).meaning == '\0') return 0.0;
   const Range range = RangeOf(fault);
@@ -148,6 +158,7 @@ std::vector<OperatorConfig> DrawOperations(const FleetConfig& fleet, Dice* dice)
 ScenarioConfig DrawTrial(const ScenarioConfig& base, uint64_t seed) {
   Dice dice(seed);
   ScenarioConfig trial = base;
+  DrawDrives(&dice, &trial.fleet);
   const bool operated = dice.Comes(1.0 / 3.0);
   if (operated) {
     trial.start.mode = StartMode::kMonitor;
@@ -158,7 +169,8 @@ ScenarioConfig DrawTrial(const ScenarioConfig& base, uint64_t seed) {
   }
   // Most faults meet an arm that follows; some come while boards start or are being armed.
   const bool early = operated || dice.Comes(0.2);
-  const double first_s = dice.In(early ? 0.0 : kSettled_s, kLastEvent_s - kShortest_s);
+  const bool from_the_start = early && dice.Comes(0.1);
+  const double first_s = from_the_start ? 0.0 : dice.In(early ? 0.0 : kSettled_s, kLastEvent_s - kShortest_s);
   if (!operated || dice.Comes(0.9)) trial.faults.push_back(DrawFault(trial.fleet, first_s, &dice));
   if (!trial.faults.empty() && dice.Comes(0.5)) {
     trial.faults.push_back(DrawFault(trial.fleet, DrawSecondTime(first_s, &dice), &dice));

@@ -51,10 +51,11 @@ std::string ScriptOf(const ScenarioConfig& trial, const std::string& name, const
   std::string text = comment + "\nname = " + ValueText(name) + "\nbase = " + ValueText(base) + "\n";
   if (trial.start.mode != StartConfig().mode)
     text += "\n[start]\nmode = " + ValueText(trial.start.mode) + "\n";
-  const FleetStop stop = trial.fleet.arms.front().control.supervisor.fleet_stop;
-  if (stop != SupervisorConfig().fleet_stop) {
-    text += "\n[overrides]\n\"control.supervisor.fleet_stop\" = " + ValueText(stop) + "\n";
-  }
+  const ArmEntry& arm = trial.fleet.arms.front();
+  const FleetStop stop = arm.control.supervisor.fleet_stop;
+  text += "\n[overrides]\n\"arm.*.drive\" = " + ValueText(arm.joints.front().profile) + "\n";
+  if (stop != SupervisorConfig().fleet_stop)
+    text += "\"control.supervisor.fleet_stop\" = " + ValueText(stop) + "\n";
   for (const FaultConfig& fault : trial.faults) text += TableOf("fault", fault);
   for (const OperatorConfig& operation : trial.operations) text += TableOf("operator", operation);
   return text;

@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kPeriodNs = 10'000'000;
 
 TEST(SilenceWatch, ASenderWithoutLossesIsMissedAfterAFewMessages) {
-  SilenceWatch watch{SilenceWatch::Config()};
+  SilenceWatch watch{SilenceWatch::Config(), 0};
   EXPECT_FALSE(watch.IsSilent(0)) << "it was never heard";
   for (int64_t k = 1; k <= 100; ++k) {
     watch.OnMessage(k, k * kPeriodNs, k * kPeriodNs);
@@ -21,8 +21,18 @@ TEST(SilenceWatch, ASenderWithoutLossesIsMissedAfterAFewMessages) {
   EXPECT_TRUE(watch.IsSilent(109 * kPeriodNs));
 }
 
+TEST(SilenceWatch, ASenderThatNeverSpeaksOrSpeaksOnceIsMissedAfterASecond) {
+  SilenceWatch never{SilenceWatch::Config(), 5'000'000'000};
+  EXPECT_FALSE(never.IsSilent(5'990'000'000));
+  EXPECT_TRUE(never.IsSilent(6'010'000'000));
+  SilenceWatch once{SilenceWatch::Config(), 0};
+  once.OnMessage(1, 500'000'000, 500'000'000);
+  EXPECT_FALSE(once.IsSilent(1'490'000'000));
+  EXPECT_TRUE(once.IsSilent(1'510'000'000));
+}
+
 TEST(SilenceWatch, ASlowSenderHasItsOwnTime) {
-  SilenceWatch watch{SilenceWatch::Config()};
+  SilenceWatch watch{SilenceWatch::Config(), 0};
   for (int64_t k = 1; k <= 10; ++k) watch.OnMessage(k, 10 * k * kPeriodNs, 10 * k * kPeriodNs);
   EXPECT_FALSE(watch.IsSilent(175 * kPeriodNs));
   EXPECT_TRUE(watch.IsSilent(185 * kPeriodNs));
@@ -31,7 +41,7 @@ TEST(SilenceWatch, ASlowSenderHasItsOwnTime) {
 TEST(SilenceWatch, LossesAreNotTakenForDeathAndDeathIsNoticedAllTheSame) {
   std::mt19937 random(1);
   for (const double loss : {0.05, 0.3, 0.5}) {
-    SilenceWatch watch{SilenceWatch::Config()};
+    SilenceWatch watch{SilenceWatch::Config(), 0};
     int alarms = 0;
     int64_t longest = 0;
     int64_t last = 0;
