@@ -118,25 +118,34 @@ void LoadLearned(const ConfigCursor& at, ScenarioConfig* scenario, std::vector<C
 std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::vector<std::string>& sets,
                                            std::vector<ConfigError>* errors) {
   const size_t errors_before = errors->size();
-  const std::vector<Override> from_command_line = ParseSets(sets, errors);
+  const std::vector<Override> overrides = ParseSets(sets, errors);
   auto tree = LoadToml(path, errors);
   if (!tree) return std::nullopt;
-  std::vector<Override> overrides;
-  if (!PutOnBase(&*tree, &overrides, errors)) return std::nullopt;
-  overrides.insert(overrides.end(), from_command_line.begin(), from_command_line.end());
-  const std::vector<Override> for_fleet = ApplyOwn(overrides, &*tree, errors);
+  auto scenario = ScenarioFromTree(std::move(*tree), path, overrides, errors);
+  if (errors->size() > errors_before) return std::nullopt;
+  return scenario;
+}
+
+std::optional<ScenarioConfig> ScenarioFromTree(ConfigNode tree, const std::string& path,
+                                               const std::vector<Override>& overrides,
+                                               std::vector<ConfigError>* errors) {
+  const size_t errors_before = errors->size();
+  std::vector<Override> all;
+  if (!PutOnBase(&tree, &all, errors)) return std::nullopt;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const std::vector<Override> for_fleet = ApplyOwn(all, &tree, errors);
 
   ScenarioLayout layout;
-  ReadConfig(*tree, &layout, errors);
+  ReadConfig(tree, &layout, errors);
   if (layout.base != kNoBase) {
-    Report(ConfigCursor(*tree).At("base"), "allowed in a scenario file, not in overrides", errors);
+    Report(ConfigCursor(tree).At("base"), "allowed in a scenario file, not in overrides", errors);
   }
   ScenarioConfig& scenario = layout.scenario;
   scenario.file = path;
   TaskVector& centre = scenario.start.zeta_x_centre_m;
   if (centre.size() == 1) centre = TaskVector::Constant(PlanarArm::kTaskDim, centre[0]);
 
-  const ConfigCursor root(*tree);
+  const ConfigCursor root(tree);
   CheckScenario(scenario, root, errors);
   SortByPlace(errors, errors_before);
   const auto loaded = LoadItsFleet(path, layout.fleet, root.At("fleet"), for_fleet, errors);

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "firmware/app/config/config_error.h"
+#include "firmware/app/config/config_node.h"
 #include "firmware/app/config/effective_values.h"
+#include "firmware/app/config/override.h"
 #include "hil/scenario.h"
 
 namespace armada {
@@ -17,6 +19,11 @@ namespace armada {
 /// Start-up only.
 std::optional<ScenarioConfig> LoadScenario(const std::string& path, const std::vector<std::string>& sets,
                                            std::vector<ConfigError>* errors);
+
+/// The scenario that a tree means; `path` is the file it is said to be of. `overrides` go before its own.
+std::optional<ScenarioConfig> ScenarioFromTree(ConfigNode tree, const std::string& path,
+                                               const std::vector<Override>& overrides,
+                                               std::vector<ConfigError>* errors);
 
 /// Writes `fleet.toml` and `scenario.toml` into an existing directory: every value as this run uses it,
 /// overrides applied. LoadScenario reads the same values back. False and one sentence when a file cannot be

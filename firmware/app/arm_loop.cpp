@@ -32,10 +32,9 @@ bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
   bool ready = false;
   const int64_t periods_ahead = std::max<int64_t>(0, (epoch_ns_ - MonotonicNow()) / period_ns_);
   for (int64_t tick_ns = epoch_ns_ - periods_ahead * period_ns_; tick_ns < epoch_ns_; tick_ns += period_ns_) {
-    SleepUntil(tick_ns);
+    ListenUntil(tick_ns);
     if (*stop != 0) return false;
     TakeWaitingFrames();
-    TakeWaitingMessages();
     out_.Clear();
     ready = node_->BringUp(tick_ns, &out_);
     Send();
@@ -50,7 +49,7 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   heap_at_start_ = static_cast<int64_t>(HeapCounter::Allocations());
   faults_at_start_ = PageFaults();
   while (tick_ns < end_ns) {
-    SleepUntil(tick_ns);
+    ListenUntil(tick_ns);
     if (*stop != 0) break;
     const int64_t now_ns = MonotonicNow();
     if (const int64_t late_periods = (now_ns - tick_ns) / period_ns_; late_periods > 0) {
@@ -67,6 +66,17 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   bus_->DropWaiting();
   Send();
   ConfirmSent(MonotonicNow() + period_ns_);
+}
+
+// Several times a period: a storm has only a part of it to fill the kernel's queue, and leaves only a part of
+// its messages to be taken between sample and torque.
+void ArmLoop::ListenUntil(int64_t time_ns) {
+  constexpr int kParts = 4;
+  for (int part = kParts - 1; part > 0; --part) {
+    SleepUntil(time_ns - part * period_ns_ / kParts);
+    TakeWaitingMessages();
+  }
+  SleepUntil(time_ns);
 }
 
 void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {

@@ -42,6 +42,8 @@ class ArmLoop {
 
  private:
   void Tick(int64_t tick_ns, int64_t woken_ns);
+  /// Sleeps until then, but for taking what comes meanwhile.
+  void ListenUntil(int64_t time_ns);
   void Send();
   /// Waits until the torques are on the wire.
   void ConfirmSent(int64_t deadline_ns);
@@ -50,7 +52,7 @@ class ArmLoop {
   int64_t AwaitSamples(int64_t deadline_ns);
   /// Takes what is waiting: heartbeats count, samples from before the request must not.
   void TakeWaitingFrames();
-  /// Hears the neighbours, also while the drives come up: the kernel's queue is short.
+  /// Hears the neighbours and the operator.
   void TakeWaitingMessages();
   void AnswerOperator(int64_t tick_ns);
   void PublishTelemetry();

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "firmware/app/bus_watch.h"
 #include "firmware/app/fleet.h"
@@ -70,6 +71,7 @@ class ArmNode {
   std::string_view reply_channel() const { return reply_channel_; }
   const ArmController& controller() const { return controller_; }
   const RejectedMessages& rejected_messages() const { return neighbourhood_.rejected(); }
+  std::vector<HeardSender> heard_senders() const { return neighbourhood_.heard(); }
   /// Messages of a neighbour or of an operator that were dropped.
   int64_t rejected_count() const { return neighbourhood_.rejected().total() + desk_.rejected(); }
   /// Frames of a drive that no drive of its kind would send.

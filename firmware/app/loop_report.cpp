@@ -16,6 +16,17 @@ void Put(std::ostream& out, const char* name, const DurationHistogram& histogram
       << ", \"max\": " << histogram.max_us() << "},\n";
 }
 
+void PutHeard(std::ostream& out, const std::vector<HeardSender>& senders) {
+  const char* separator = "";
+  out << "    \"lcm_heard\": [";
+  for (const HeardSender& sender : senders) {
+    out << separator << "{\"from\": " << sender.arm_id << ", \"accepted\": " << sender.accepted
+        << ", \"missed\": " << sender.missed << "}";
+    separator = ", ";
+  }
+  out << "]\n";
+}
+
 int64_t ResidentBytes() {
   std::ifstream statm("/proc/self/statm");
   int64_t total_pages = 0;
@@ -64,7 +75,9 @@ void WriteLoopReport(const ArmLoop& loop, const ArmNode& node, const CanBus& bus
       << ",\n    \"lcm_replayed\": " << rejected.replayed << ",\n    \"lcm_late\": " << rejected.late
       << ",\n    \"lcm_implausible\": " << rejected.implausible
       << ",\n    \"lcm_malformed\": " << lcm.malformed << ",\n    \"lcm_overflowed\": " << lcm.overflowed
-      << "\n  }\n}\n";
+      << ",\n";
+  PutHeard(out, node.heard_senders());
+  out << "  }\n}\n";
 }
 
 }  // namespace armada

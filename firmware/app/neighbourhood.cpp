@@ -122,6 +122,10 @@ bool Neighbourhood::Take(Source& source, const Message& message, int64_t arrival
     ++rejected_.implausible;
     return false;
   }
+  // A sender that starts anew counts from 1 again, and misses nothing by that.
+  if (source.accepted > 0) source.missed += std::max<int64_t>(0, message.sequence - source.sequence - 1);
+  ++source.accepted;
+  source.sequence = message.sequence;
   source.stamp_ns = message.stamp_ns;
   source.neighbour.zeta = zeta;
   source.neighbour.jerk_m_s3 = ToTask(message.jerk_m_s3);
@@ -171,6 +175,12 @@ void Neighbourhood::ReadAt(int64_t tick_ns, Neighbours* neighbours) const {
     neighbour.age_s = AgeOf(source, source.stamp_ns, tick_ns);
     neighbour.leader_age_s = source.leader_age_s + neighbour.age_s;
   }
+}
+
+std::vector<HeardSender> Neighbourhood::heard() const {
+  std::vector<HeardSender> heard;
+  for (const Source& source : sources_) heard.push_back({source.arm_id, source.accepted, source.missed});
+  return heard;
 }
 
 bool Neighbourhood::AllGood(int64_t tick_ns) const {

@@ -26,6 +26,13 @@ struct RejectedMessages {
   int64_t total() const { return malformed + forged + replayed + stale + late + implausible; }
 };
 
+/// What has come of a sender that a board listens to.
+struct HeardSender {
+  int arm_id = 0;        ///< 0: the leader
+  int64_t accepted = 0;  ///< messages
+  int64_t missed = 0;    ///< gaps between them, by the sender's own count
+};
+
 /// What one board hears of the leader and of the arms that it listens to, in any of the topologies. Allocates
 /// in the constructor only.
 class Neighbourhood {
@@ -44,6 +51,8 @@ class Neighbourhood {
   bool AllGood(int64_t tick_ns) const;
 
   const RejectedMessages& rejected() const { return rejected_; }
+  /// Allocates: for the report of a run.
+  std::vector<HeardSender> heard() const;
 
  private:
   struct Source {
@@ -51,7 +60,10 @@ class Neighbourhood {
     std::optional<SealCheck> seal;
     ClockOffset clock;
     SilenceWatch silence;
+    int64_t sequence = 0;
     int64_t stamp_ns = 0;
+    int64_t accepted = 0;
+    int64_t missed = 0;
     Neighbour neighbour{};
     double leader_age_s = 0.0;  ///< as sent; infinite when the sender knows of no leader
     int64_t fleet_digest = 0;

@@ -39,9 +39,10 @@ void OperatorDesk::OnMessage(const LcmMessage& message) {
     reply_due_ = true;  // sent again: its reply was lost
     if (!estop) return;
   }
-  // An e-stop is not overtaken by anything.
+  // Nothing overtakes an e-stop, and nothing recorded a command that is newer.
   const bool pending_estop = pending_ && pending_->request == static_cast<int>(Request::kEstop);
-  if (estop || !pending_estop) pending_ = command;
+  const bool older = pending_ && command.heard_stamp_ns < pending_->heard_stamp_ns;
+  if (estop || (!pending_estop && !older)) pending_ = command;
 }
 
 Request OperatorDesk::TakeRequest(int64_t tick_ns) {

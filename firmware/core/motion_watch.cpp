@@ -33,12 +33,13 @@ bool MotionWatch::LosesItsPosture(const MotionSeen& seen, double elapsed_s) {
   return (seen.q_rad - q_held_rad_).cwiseAbs().maxCoeff() > config_.hold_drift_rad;
 }
 
-// An arm may start beyond a limit, and come back.
+// An arm may start beyond a limit, and come back. It may have limits on one side only.
 bool MotionWatch::CrossesALimit(const JointVector& q_rad) {
-  if (arm_.q_min_rad.size() == 0) return false;
   const double margin_rad = config_.joint_limit_margin_rad;
-  const bool within = (q_rad.array() >= arm_.q_min_rad.array() - margin_rad).all() &&
-                      (q_rad.array() <= arm_.q_max_rad.array() + margin_rad).all();
+  const JointVector& min_rad = arm_.q_min_rad;
+  const JointVector& max_rad = arm_.q_max_rad;
+  const bool within = (min_rad.size() == 0 || (q_rad.array() >= min_rad.array() - margin_rad).all()) &&
+                      (max_rad.size() == 0 || (q_rad.array() <= max_rad.array() + margin_rad).all());
   const bool crosses = was_within_limits_ && !within;
   was_within_limits_ = within;
   return crosses;

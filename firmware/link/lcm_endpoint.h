@@ -25,8 +25,7 @@ struct LcmCounters {
   uint64_t send_failures = 0;  ///< refused by Publish or by the kernel
   uint64_t received = 0;       ///< well-formed messages, of any channel
   uint64_t malformed = 0;      ///< datagrams that are no short message
-  uint64_t truncated = 0;      ///< messages longer than kMaxDatagram
-  uint64_t overflowed = 0;     ///< datagrams the kernel dropped because the queue was full
+  uint64_t overflowed = 0;  ///< datagrams the kernel dropped: longer than kMaxDatagram, or the queue was full
 };
 
 /// LCM's short messages on one non-blocking multicast socket, for a real-time loop: no thread, and no heap
@@ -43,7 +42,7 @@ class LcmEndpoint {
   /// One Ethernet frame's worth: what boards send is never fragmented.
   static constexpr size_t kMaxDatagram = 1472;
   /// Datagrams one Drain takes at most.
-  static constexpr int kMaxPerDrain = 320;
+  static constexpr int kMaxPerDrain = 640;
 
   /// Joins the group. On failure returns nothing and sets `*error` to the reason and what to do. Start-up
   /// only.

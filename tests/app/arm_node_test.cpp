@@ -283,6 +283,18 @@ TEST_F(Board, DropsAndCountsWhatIsNoMessage) {
   EXPECT_EQ(node_.rejected_messages().total(), 2);
 }
 
+TEST_F(Board, CountsWhatItAcceptsOfASenderAndWhatItMisses) {
+  for (const int64_t k : {0, 1, 2, 5, 6, 9}) {
+    SendLeader(k);
+    SendLeader(k);  // again: not accepted
+  }
+  const std::vector<HeardSender> heard = node_.heard_senders();
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_EQ(heard[0].arm_id, 0);
+  EXPECT_EQ(heard[0].accepted, 6);
+  EXPECT_EQ(heard[0].missed, 4);
+}
+
 TEST_F(Board, PublishesTheEstimateThatIsValidAtTheTick) {
   for (int64_t k = 0; k < 3; ++k) Tick(k);
   estimate_t estimate;

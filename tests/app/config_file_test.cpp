@@ -97,6 +97,16 @@ TEST(FleetFile, GarbageIsAnErrorAndNothingElse) {
   }
 }
 
+TEST(FleetFile, WhatIsNoTomlIsToldWithItsLine) {
+  for (const char* text : {"[a]\n\nb = [1]\nä = 1\n", "a = 1\nb = 2\nc = 3\n[[[x]]]\nd = 4\n",
+                           "\n\n\na = かな", "# ä\nb = \"ä\" # ä\n\n[[\n"}) {
+    std::vector<ConfigError> errors;
+    EXPECT_FALSE(ParseToml(text, "a.toml", &errors).has_value());
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].line, 4) << ToString(errors[0]);
+  }
+}
+
 TEST(FleetFile, ErrorsAreWrittenAsFileLineKeyMessage) {
   EXPECT_EQ(ToString({"a.toml", 3, "arm.1.id", "missing"}), "a.toml:3: arm.1.id: missing");
   EXPECT_EQ(ToString({"--set", 0, "x", "unknown"}), "--set: x: unknown");

@@ -84,6 +84,15 @@ TEST_F(Desk, ARecordedCommandIsWorthNothingAMomentLater) {
   EXPECT_EQ(desk_.TakeRequest(kNowNs), Request::kNone);
 }
 
+TEST_F(Desk, ARecordedCommandDoesNotDisplaceOneThatIsNewer) {
+  Hear(Command(Request::kStart, kNowNs - 3 * kTickNs));
+  command_t hold = Command(Request::kHold, kNowNs - 2 * kTickNs);
+  hold.stamp_ns = 6;
+  Hear(hold);
+  Hear(Command(Request::kStart, kNowNs - 3 * kTickNs));  // somebody plays it again before the tick
+  EXPECT_EQ(desk_.TakeRequest(kNowNs), Request::kHold);
+}
+
 TEST_F(Desk, AnEstopCountsAlwaysAndIsNotOvertaken) {
   for (const int8_t arm : {int8_t{0}, int8_t{3}}) {
     command_t estop = Command(Request::kEstop, 0);

@@ -93,5 +93,20 @@ TEST_F(Watched, AJointThatLeavesItsLimitsCountsAndOneThatStartsBeyondThemDoesNot
   EXPECT_TRUE(StepFor(beyond, kPeriod_s).Has(Cause::kJointLimit));
 }
 
+TEST_F(Watched, LimitsMayBeOnOneSideOnly) {
+  for (const double side : {-1.0, 1.0}) {
+    PlanarArmConfig arm = arm_;
+    (side < 0.0 ? arm.q_max_rad : arm.q_min_rad).resize(0);
+    watch_ = MotionWatch(config_, arm);
+    StepFor(Fine(), kPeriod_s);
+    MotionSeen free = Fine();
+    free.q_rad[1] = -100.0 * side;
+    EXPECT_TRUE(StepFor(free, kPeriod_s).empty());
+    MotionSeen beyond = Fine();
+    beyond.q_rad[1] = side * (1.0 + 2.0 * config_.joint_limit_margin_rad);
+    EXPECT_TRUE(StepFor(beyond, kPeriod_s).Has(Cause::kJointLimit));
+  }
+}
+
 }  // namespace
 }  // namespace armada

@@ -12,7 +12,9 @@
 #include "firmware/link/lcm_packet.h"
 #include "firmware/link/messages.h"
 #include "tests/fuzz/drive_world.h"
+#include "tests/fuzz/edited_text.h"
 #include "tests/fuzz/link_actions.h"
+#include "tests/fuzz/operator_actions.h"
 
 namespace armada {
 namespace {
@@ -149,6 +151,15 @@ void AddLcmSeeds(const std::filesystem::path& root) {
   telemetry.arm_id = 1;
   telemetry.dof = 3;
   add("TEL_1", telemetry);
+  command_t command{};
+  command.sequence = 1;
+  command.request = 1;
+  add("CMD", command);
+  reply_t reply{};
+  reply.sequence = 1;
+  reply.arm_id = 1;
+  reply.request = 1;
+  add("ACK_1", reply);
 }
 
 uint8_t Code(LinkAction action) {
@@ -176,6 +187,56 @@ void AddLinkSeeds(const std::filesystem::path& root) {
   }
 }
 
+uint8_t Code(OperatorAction action) {
+  return static_cast<uint8_t>(action);
+}
+
+/// A board that is armed, started, held, started again and stopped; and between that each thing that is
+/// refused.
+void AddOperatorSeeds(const std::filesystem::path& root) {
+  Corpus corpus(root, "operator");
+  using enum OperatorAction;
+  constexpr uint8_t kArm = 0, kStart = 1, kHold = 2, kReset = 3, kEstop = 4;
+  constexpr uint8_t kLong = 31;
+  for (const Bytes& refused : {Bytes{},
+                               {Code(kWrong), 2, 1, 0, 0, 1},
+                               {Code(kRepeat), 0},
+                               {Code(kDamage), 0, 9, 0},
+                               {Code(kForeign), kEstop},
+                               {Code(kNoSeal), kEstop},
+                               {Code(kLeader)},
+                               {Code(kDrives)}}) {
+    Bytes seed = {Code(kTicks), kLong};
+    for (const uint8_t request : {kArm, kStart, kHold, kStart, kEstop, kReset, kArm}) {
+      seed.insert(seed.end(), {Code(kCommand), request});
+      seed.insert(seed.end(), refused.begin(), refused.end());
+      seed.insert(seed.end(), {Code(kTicks), kLong});
+    }
+    corpus.Add(seed);
+  }
+}
+
+/// Three messages, each followed by one thing of every kind.
+void AddSealSeed(const std::filesystem::path& root) {
+  Bytes seed;
+  for (uint8_t message = 0; message < 3; ++message) {
+    seed.insert(seed.end(),
+                {0, message, 0, 4, 1, 2, 3, 4, 1, 2, 0, 3, 5, 0, 1, 4, 1, 0, 5, 1, 6, 0, 2, 8, 9});
+  }
+  Corpus(root, "seal").Add(seed);
+}
+
+/// Each file as it is, and the first two with one edit of each kind.
+void AddTextSeeds(const std::filesystem::path& root, const std::string& fuzzer, int files) {
+  Corpus corpus(root, fuzzer);
+  for (int file = 0; file < files; ++file) {
+    const auto which = static_cast<uint8_t>(file);
+    corpus.Add(Bytes{which});
+    for (uint8_t edit = 0; file < 2 && edit < static_cast<uint8_t>(TextEdit::kCount); ++edit)
+      corpus.Add(Bytes{which, edit, static_cast<uint8_t>(17 * (file + 1)), 0, 3, 0, 5, 0, 0, 0, 0, 0});
+  }
+}
+
 }  // namespace
 }  // namespace armada
 
@@ -195,5 +256,9 @@ int main(int argc, char** argv) {
   }
   AddLcmSeeds(root);
   AddLinkSeeds(root);
+  AddOperatorSeeds(root);
+  AddSealSeed(root);
+  AddTextSeeds(root, "fleet", 2);
+  AddTextSeeds(root, "scenario", 60);
   return 0;
 }

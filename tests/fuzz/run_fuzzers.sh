@@ -30,8 +30,10 @@ fuzz() {
 }
 export -f fuzz
 
-# The parsers have no state and are exhausted soon: a third of the time each.
+# Files and the operator's board get half of the time each. Parsers and seals have little state and are exhausted soon: a
+# sixth.
 {
   printf '%s '"$3"'\n' link odrive_cansimple odrive_cansimple_v05 mini_cheetah cubemars damiao cia402 moteus
-  printf '%s '"$((($3 + 2) / 3))"'\n' udp_frame lcm_packet lcm_messages
+  printf '%s '"$((($3 + 1) / 2))"'\n' fleet scenario operator
+  printf '%s '"$((($3 + 5) / 6))"'\n' udp_frame lcm_packet lcm_messages seal
 } | xargs -P "$(nproc)" -L 1 bash -c 'set -o pipefail; fuzz "$@"' fuzz || exit 1

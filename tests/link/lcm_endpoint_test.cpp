@@ -95,15 +95,19 @@ TEST_F(Endpoint, RefusesToPublishWhatItCouldNotReceive) {
   EXPECT_EQ(DrainMessages(endpoint.get(), 1), (std::vector<Message>{{"A", largest}}));
 }
 
-TEST_F(Endpoint, IgnoresAndCountsWhatIsTooLong) {
+TEST_F(Endpoint, WhatIsTooLongTakesNoRoomInTheQueueAndIsCounted) {
+  constexpr uint64_t kMany = 1000;
   const auto endpoint = OpenEndpoint();
   const RawSender raw;
-  std::vector<uint8_t> datagram(5000, 1);
-  WriteLcmPacket(0, {"A", {}}, datagram);
-  raw.Send(datagram);
+  std::vector<uint8_t> datagram(LcmEndpoint::kMaxDatagram + 1);
+  for (uint64_t i = 0; i < kMany; ++i) {
+    WriteLcmPacket(0, {"A", {}}, datagram);
+    raw.Send(datagram);
+    datagram.resize(datagram.size() == 60'000 ? LcmEndpoint::kMaxDatagram + 1 : 60'000);
+  }
   ASSERT_TRUE(endpoint->Publish("B", {}));
   EXPECT_EQ(DrainMessages(endpoint.get(), 1), (std::vector<Message>{{"B", {}}}));
-  EXPECT_EQ(endpoint->counters().truncated, 1U);
+  EXPECT_EQ(endpoint->counters().overflowed, kMany);
 }
 
 TEST_F(Endpoint, StampsTheArrivalNotTheReading) {
