@@ -71,8 +71,9 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
      "once the arm follows, a joint is at its torque limit and |x - x_hat| above "
      "`control.supervisor.following_error_m` for `control.supervisor.saturated_max_s` without a break"},
     {Cause::kFleetStop, ControllerState::kHold, false, "a neighbour has stopped",
-     "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, with `control.supervisor.fleet_stop = "
-     "\"hold\"`"},
+     "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, or somebody that it heard has fallen "
+     "silent, "
+     "with `control.supervisor.fleet_stop = \"hold\"`"},
     {Cause::kOperatorHold, ControllerState::kHold, false, "operator: hold", "`armada ctl hold`"},
     {Cause::kTorquesUnsent, ControllerState::kSafeStop, false, "torques not sent",
      "the same as torques late in `timing.transmit_failures_max` ticks in a row"},
