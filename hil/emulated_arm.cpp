@@ -34,6 +34,8 @@ EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t 
                                  entry.joints[i], scenario.faults, entry.id, static_cast<int>(i) + 1, start_s,
                                  fault_seed));
   }
+  power_.resize(drives_.size());
+  powered_.resize(drives_.size(), false);
   wire_ = MakeFaultyWire(scenario.faults, entry.id, seed);
 }
 
@@ -75,6 +77,15 @@ void EmulatedArm::BrakeIfOff() {
   plant_.dq_rad_s = {};
 }
 
+void EmulatedArm::NotePower() {
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    const bool on = drives_[i]->ProducesTorque();
+    if (on == powered_[i]) continue;
+    powered_[i] = on;
+    (on ? power_[i].on_s : power_[i].off_s) = time_s();
+  }
+}
+
 void EmulatedArm::Integrate(double dt_s) {
   PlanarPlant::Joints tau_Nm = tau_Nm_;
   const double d_until_s = disturbance_.NextChange(time_s());
@@ -112,6 +123,7 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
         SendOverWire(out);
         TakeLateFrames(out);
       }
+      NotePower();
     }
     BrakeIfOff();
     ReleaseIfReady();
@@ -129,6 +141,7 @@ void EmulatedArm::HandOver(const CanFrame& frame, FrameList* out) {
     drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), Outbox(out));
   }
   if (wire_) SendOverWire(out);
+  NotePower();
 }
 
 void EmulatedArm::SendOverWire(FrameList* out) {

@@ -11,6 +11,12 @@
 
 namespace armada {
 
+/// When a drive's power stage last came on and went off; never: none.
+struct DrivePower {
+  std::optional<double> on_s;
+  std::optional<double> off_s;
+};
+
 /// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
 /// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
 /// let go with the start speed. With every drive off for 0.1 s the brakes close again. Faults of its drives
@@ -34,6 +40,8 @@ class EmulatedArm {
   /// The joints' speed left every bound; the plant is frozen where it was.
   bool diverged() const { return diverged_; }
   bool released() const { return released_; }
+  /// Of each drive, in the order of the joints.
+  const std::vector<DrivePower>& power() const { return power_; }
 
  private:
   JointTruth TruthOf(size_t joint) const;
@@ -47,6 +55,8 @@ class EmulatedArm {
   double NextEventClock() const;
   void ReleaseIfReady();
   void BrakeIfOff();
+  /// After each moment at which a drive may have gone on or off.
+  void NotePower();
   void Integrate(double dt_s);
 
   PlantConfig config_;
@@ -54,6 +64,8 @@ class EmulatedArm {
   Disturbance disturbance_;
   const LeaderPath* leader_;
   std::vector<std::unique_ptr<EmulatedDrive>> drives_;
+  std::vector<DrivePower> power_;
+  std::vector<bool> powered_;
   std::optional<FaultyWire> wire_;  ///< without a fault there is none between board and drives
   FrameList sent_;
   PlanarPlant::Joints start_speed_rad_s_;

@@ -129,6 +129,7 @@ std::vector<HilArmResult> HilServer::Results() const {
                        .bus_down = arm.bus_down,
                        .diverged = arm.bench.diverged(),
                        .released_s = arm.released_s,
+                       .drives = arm.bench.power(),
                        .record = leader_ ? std::optional(arm.record) : std::nullopt,
                        .counters = arm.bus->counters(),
                        .bus_load = arm.time_ns > epoch_ns_ ? arm.on_wire_s / FleetTime(arm.time_ns) : 0.0});

@@ -25,6 +25,7 @@ struct HilArmResult {
   bool bus_down = false;
   bool diverged = false;
   std::optional<double> released_s;  ///< when the brakes opened; never without every drive in torque mode
+  std::vector<DrivePower> drives;    ///< in the order of the joints
   /// None in a leaderless scenario: there is nothing to measure against.
   std::optional<TrackingRecord> record;
   BusCounters counters;
