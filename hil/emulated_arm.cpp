@@ -16,7 +16,10 @@ constexpr double kSameInstant_s = 1e-9;
 
 EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
                          const LeaderPath* leader, double start_s)
-    : config_(scenario.plant),
+    : id_(scenario.fleet.arms[index].id),
+      joints_(scenario.fleet.arms[index].joints),
+      seed_(seed),
+      config_(scenario.plant),
       plant_(scenario.fleet.arms[index].arm),
       disturbance_(scenario.disturbance, seed, scenario.fleet.arms[index].id),
       leader_(leader),
@@ -26,12 +29,31 @@ EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t 
   const ArmEntry& entry = scenario.fleet.arms[index];
   for (size_t i = 0; i < entry.joints.size(); ++i) {
     const uint64_t sensor_seed = RandomBits(seed, kSensorStream, static_cast<uint64_t>(entry.id), i);
-    const uint64_t fault_seed = RandomBits(seed, kFaultStream, static_cast<uint64_t>(entry.id), i);
-    drives_.push_back(WithFaults(MakeEmulatedDrive(entry.joints[i], scenario.drive, sensor_seed),
-                                 entry.joints[i], scenario.faults, entry.id, static_cast<int>(i) + 1, start_s,
-                                 fault_seed));
+    drives_.push_back(MakeEmulatedDrive(entry.joints[i], scenario.drive, sensor_seed));
   }
+  AddToDrives(scenario.faults);
+  power_.resize(drives_.size());
+  powered_.resize(drives_.size(), false);
   wire_ = MakeFaultyWire(scenario.faults, entry.id, seed);
+}
+
+void EmulatedArm::AddToDrives(const std::vector<FaultConfig>& faults) {
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    const uint64_t fault_seed = RandomBits(seed_, kFaultStream, static_cast<uint64_t>(id_), i);
+    drives_[i] = WithFaults(std::move(drives_[i]), joints_[i], faults, id_, static_cast<int>(i) + 1, start_s_,
+                            fault_seed);
+  }
+}
+
+void EmulatedArm::Add(const FaultConfig& fault) {
+  AddToDrives({fault});
+  auto wire = MakeFaultyWire({fault}, id_, seed_);
+  if (wire && wire_) {
+    wire_->Add(fault);
+  } else if (wire) {
+    wire_ = std::move(wire);
+  }
+  quiet_until_s_ = clock_s_;
 }
 
 JointTruth EmulatedArm::TruthOf(size_t joint) const {
@@ -72,6 +94,15 @@ void EmulatedArm::BrakeIfOff() {
   plant_.dq_rad_s = {};
 }
 
+void EmulatedArm::NotePower() {
+  for (size_t i = 0; i < drives_.size(); ++i) {
+    const bool on = drives_[i]->ProducesTorque();
+    if (on == powered_[i]) continue;
+    powered_[i] = on;
+    (on ? power_[i].on_s : power_[i].off_s) = time_s();
+  }
+}
+
 void EmulatedArm::Integrate(double dt_s) {
   PlanarPlant::Joints tau_Nm = tau_Nm_;
   const double d_until_s = disturbance_.NextChange(time_s());
@@ -109,6 +140,7 @@ void EmulatedArm::AdvanceTo(double t_s, FrameList* out) {
         SendOverWire(out);
         TakeLateFrames(out);
       }
+      NotePower();
     }
     BrakeIfOff();
     ReleaseIfReady();
@@ -126,6 +158,7 @@ void EmulatedArm::HandOver(const CanFrame& frame, FrameList* out) {
     drives_[i]->OnFrame(clock_s_, frame, TruthOf(i), Outbox(out));
   }
   if (wire_) SendOverWire(out);
+  NotePower();
 }
 
 void EmulatedArm::SendOverWire(FrameList* out) {

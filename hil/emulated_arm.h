@@ -11,6 +11,12 @@
 
 namespace armada {
 
+/// When a drive's power stage last came on and went off; never: none.
+struct DrivePower {
+  std::optional<double> on_s;
+  std::optional<double> off_s;
+};
+
 /// One arm on its bench: plant, drives and disturbance, in virtual or in real time. Until t = 0 and until
 /// every drive is in torque mode the joints stand on their brakes at the start position; then the plant is
 /// let go with the start speed. With every drive off for plant.brake_s the brakes close again. Faults of its
@@ -24,6 +30,8 @@ class EmulatedArm {
 
   /// Moves time on to `t_s`; frames that the drives send by themselves are appended to `out`.
   void AdvanceTo(double t_s, FrameList* out);
+  /// From now on there is this fault, too, of a drive or of the bus. Allocates.
+  void Add(const FaultConfig& fault);
   /// A frame on the arm's bus at `t_s`; answers are appended.
   void OnFrame(double t_s, const CanFrame& frame, FrameList* out);
 
@@ -36,8 +44,11 @@ class EmulatedArm {
   bool released() const { return released_; }
   /// Whether a joint's drive has its power stage on.
   bool IsOn(size_t joint) const { return drives_[joint]->ProducesTorque(); }
+  /// Of each drive, in the order of the joints.
+  const std::vector<DrivePower>& power() const { return power_; }
 
  private:
+  void AddToDrives(const std::vector<FaultConfig>& faults);
   JointTruth TruthOf(size_t joint) const;
   /// The frame reaches the drives.
   void HandOver(const CanFrame& frame, FrameList* out);
@@ -49,13 +60,20 @@ class EmulatedArm {
   double NextEventClock() const;
   void ReleaseIfReady();
   void BrakeIfOff();
+  /// After each moment at which a drive may have gone on or off.
+  void NotePower();
   void Integrate(double dt_s);
 
+  int id_;
+  std::vector<JointDriveConfig> joints_;
+  uint64_t seed_;
   PlantConfig config_;
   PlanarPlant plant_;
   Disturbance disturbance_;
   const LeaderPath* leader_;
   std::vector<std::unique_ptr<EmulatedDrive>> drives_;
+  std::vector<DrivePower> power_;
+  std::vector<bool> powered_;
   std::optional<FaultyWire> wire_;  ///< without a fault there is none between board and drives
   FrameList sent_;
   PlanarPlant::Joints start_speed_rad_s_;

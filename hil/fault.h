@@ -29,6 +29,9 @@ enum class FaultKind {
   kControllerRestarts,
   kSlowTick,
 
+  // The computer that the programs run on.
+  kCpuHog,
+
   // The leader.
   kLeaderDies,
   kLeaderStops,
@@ -76,7 +79,7 @@ struct FaultConfig {
     parameter({"kind", "", 0, 0, "kind of the fault; docs/faults.md says what each wants"}, kind);
     parameter({"at_s", "s", 0, kForGood_s, "time at which it begins"}, at_s);
     parameter({"until_s", "s", 0, kForGood_s, "time at which it is over"}, until_s);
-    parameter({"arm", "", 0, kMaxArms, "id of the arm; 0: the leader"}, arm);
+    parameter({"arm", "", 0, kMaxArms, "id of the arm; 0: the leader, or the computer"}, arm);
     parameter({"joint", "", 0, kMaxDof, "drive, drive_error: the joint, from 1; 0: every joint of the arm"},
               joint);
     parameter({"signal", "", 0, 0, "drive: what of it is wrong"}, signal);

@@ -13,112 +13,134 @@ constexpr double kMost = 1e6;
 constexpr FaultValue kShare = {"share of them", "", 1e-6, 1.0};
 
 constexpr auto kMeanings = std::to_array<FaultMeaning>({
-    {FaultKind::kDrive, FaultTarget::kArm, FaultEnd::kMay, true, {}, "a signal of a drive is wrong: below"},
+    {FaultKind::kDrive,
+     FaultTarget::kArm,
+     FaultEnd::kMay,
+     FaultMaker::kEmulation,
+     {},
+     "a signal of a drive is wrong: below"},
     {FaultKind::kDriveError,
      FaultTarget::kArm,
      FaultEnd::kNever,
-     true,
+     FaultMaker::kEmulation,
      {},
      "the drive fails by itself: it reports an error and takes its power away"},
-    {FaultKind::kBusLoss, FaultTarget::kArm, FaultEnd::kMay, true, kShare, "CAN frames are lost, both ways"},
+    {FaultKind::kBusLoss, FaultTarget::kArm, FaultEnd::kMay, FaultMaker::kEmulation, kShare,
+     "CAN frames are lost, both ways"},
     {FaultKind::kBusDelay,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     true,
+     FaultMaker::kEmulation,
      {"delay", "s", 1e-4, 0.1},
      "CAN frames are late, both ways, in order"},
     {FaultKind::kBusOff,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     true,
+     FaultMaker::kEmulation,
      {},
      "the board's CAN controller is bus-off, and restarted in the end: no frame passes"},
     {FaultKind::kErrorPassive,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {},
      "the board's CAN controller is error-passive: frames pass"},
     {FaultKind::kBusDown,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     true,
+     FaultMaker::kEmulation,
      {},
      "the board's CAN interface is down: no frame passes"},
     {FaultKind::kQueueFull,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {},
      "the board's transmit queue is full: its torques are not sent"},
     {FaultKind::kControllerDies,
      FaultTarget::kArm,
      FaultEnd::kNever,
-     false,
+     FaultMaker::kRun,
      {},
      "the controller is killed, for good"},
     {FaultKind::kControllerStops,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kRun,
      {},
      "the controller gets no time, as after SIGSTOP, and then goes on"},
     {FaultKind::kControllerRestarts,
      FaultTarget::kArm,
      FaultEnd::kMust,
-     false,
+     FaultMaker::kRun,
      {},
      "the controller is killed, and a new one starts at until_s"},
     {FaultKind::kSlowTick,
      FaultTarget::kArm,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {"time", "s", 1e-4, 1.0},
      "each tick takes the controller that long"},
-    {FaultKind::kLeaderDies, FaultTarget::kLeader, FaultEnd::kNever, false, {}, "the leader falls silent"},
+    {FaultKind::kCpuHog,
+     FaultTarget::kComputer,
+     FaultEnd::kMust,
+     FaultMaker::kRunOnly,
+     {"SCHED_FIFO priority, 0: none", "", 0.0, 99.0},
+     "a program of that priority keeps a processor busy"},
+    {FaultKind::kLeaderDies,
+     FaultTarget::kLeader,
+     FaultEnd::kNever,
+     FaultMaker::kRun,
+     {},
+     "the leader falls silent"},
     {FaultKind::kLeaderStops,
      FaultTarget::kLeader,
      FaultEnd::kMust,
-     false,
+     FaultMaker::kRun,
      {},
      "the leader is silent for a while"},
     {FaultKind::kLeaderJumps,
      FaultTarget::kLeader,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {"distance on each axis", "m", -1e3, 1e3},
      "the leader's position is off"},
     {FaultKind::kLeaderNonfinite,
      FaultTarget::kLeader,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {},
      "the leader's position is no number"},
-    {FaultKind::kLinkLoss, FaultTarget::kSender, FaultEnd::kMay, false, kShare,
+    {FaultKind::kLinkLoss, FaultTarget::kSender, FaultEnd::kMay, FaultMaker::kNobody, kShare,
      "messages to and from it are lost, each receiver on its own"},
-    {FaultKind::kPartition, FaultTarget::kSender, FaultEnd::kMay, false, {}, "it neither hears nor is heard"},
+    {FaultKind::kPartition,
+     FaultTarget::kSender,
+     FaultEnd::kMay,
+     FaultMaker::kNobody,
+     {},
+     "it neither hears nor is heard"},
     {FaultKind::kReplay,
      FaultTarget::kSender,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {"age", "s", 1e-3, 10.0},
      "its messages of that age are sent again, beside the new ones"},
     {FaultKind::kReorder,
      FaultTarget::kSender,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {},
      "its messages come in pairs, the newer one first"},
     {FaultKind::kForge,
      FaultTarget::kSender,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {"distance on each axis", "m", -1e3, 1e3},
      "before each of its messages comes one that is off, under a wrong seal"},
     {FaultKind::kJunk,
      FaultTarget::kSender,
      FaultEnd::kMay,
-     false,
+     FaultMaker::kNobody,
      {"messages a second", "1/s", 1.0, 1e5},
      "random bytes come on its channel"},
 });
@@ -191,12 +213,27 @@ constexpr auto kWays = std::to_array<WayMeaning>({
 
 std::string TextOf(FaultTarget target) {
   if (target == FaultTarget::kArm) return "an arm";
+  if (target == FaultTarget::kComputer) return "the computer";
   return target == FaultTarget::kLeader ? "the leader" : "an arm or the leader";
 }
 
 std::string TextOf(FaultEnd end) {
   if (end == FaultEnd::kMay) return "";
   return end == FaultEnd::kMust ? "required" : "none";
+}
+
+std::string TextOf(FaultMaker maker) {
+  switch (maker) {
+    case FaultMaker::kNobody:
+      break;
+    case FaultMaker::kEmulation:
+      return "`armada-hil`";
+    case FaultMaker::kRun:
+      return "`armada run`";
+    case FaultMaker::kRunOnly:
+      return "`armada run`, only there";
+  }
+  return "";
 }
 
 std::string TextOf(const FaultValue& value) {
@@ -244,10 +281,10 @@ FaultValue ValueOf(const FaultConfig& fault) {
 
 std::string FaultTables() {
   std::string text =
-      "| `kind` | of | `until_s` | `value` | what | in real time, too |\n|---|---|---|---|---|---|\n";
+      "| `kind` | of | `until_s` | `value` | what | made in real time by |\n|---|---|---|---|---|---|\n";
   for (const FaultMeaning& meaning : kMeanings) {
     text += Row({Code(NameOf(meaning.kind)), TextOf(meaning.target), TextOf(meaning.end),
-                 TextOf(meaning.value), meaning.what, meaning.in_real_time ? "yes" : ""});
+                 TextOf(meaning.value), meaning.what, TextOf(meaning.maker)});
   }
   text += "\n| `way` | a position, velocity or torque | `value` | a status |\n|---|---|---|---|\n";
   for (const WayMeaning& way : kWays) {

@@ -8,9 +8,18 @@ namespace armada {
 
 /// At whom a fault is aimed.
 enum class FaultTarget {
-  kArm,     ///< one arm
-  kLeader,  ///< the leader
-  kSender,  ///< one arm or the leader: who sends on a channel
+  kArm,       ///< one arm
+  kLeader,    ///< the leader
+  kSender,    ///< one arm or the leader: who sends on a channel
+  kComputer,  ///< the computer that the programs run on
+};
+
+/// Who makes a fault of a run in real time.
+enum class FaultMaker {
+  kNobody,     ///< it is of virtual time
+  kEmulation,  ///< armada-hil, which has the drives and their buses in its hands
+  kRun,        ///< `armada run`, which has the processes
+  kRunOnly,    ///< the same, and in virtual time there is nothing that it could act on
 };
 
 /// When a fault is over.
@@ -33,8 +42,8 @@ struct FaultMeaning {
   FaultKind kind;
   FaultTarget target;
   FaultEnd end;
-  bool in_real_time;  ///< in the emulation's own hands, so that armada-hil does it, too
-  FaultValue value;   ///< of kDrive: see ValueOf
+  FaultMaker maker;
+  FaultValue value;  ///< of kDrive: see ValueOf
   const char* what;
 };
 const FaultMeaning& MeaningOf(FaultKind kind);

@@ -39,6 +39,10 @@ class FaultRules {
 
   void CheckArm() {
     const bool has_leader = scenario_.leader.kind != LeaderKind::kNone;
+    if (meaning_.target == FaultTarget::kComputer) {
+      if (fault_.arm != 0) Refuse("arm", ValueText(fault_.arm), "is none");
+      return;
+    }
     const bool leader = meaning_.target != FaultTarget::kArm;
     if (leader && fault_.arm == 0) {
       if (!has_leader) Report(at_.At("arm"), "meant for the leader, but there is none", errors_);

@@ -26,6 +26,8 @@ class FaultyWire {
   /// `faults` of one arm's bus.
   FaultyWire(std::vector<FaultConfig> faults, uint64_t seed);
 
+  void Add(const FaultConfig& fault) { faults_.push_back(fault); }
+
   /// A frame is sent at the run's time `t_s`. True: it arrives at once. Otherwise it is lost, or it arrives
   /// later.
   bool Passes(double t_s, const CanFrame& frame, Way way);

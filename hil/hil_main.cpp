@@ -76,10 +76,21 @@ bool RenameBuses(const std::vector<std::string>& assignments, FleetConfig* fleet
   return true;
 }
 
+// From the monotonic clock to the wall clock. The two are read one after the other: the closest of some pairs
+// counts.
 int64_t WallOffset() {
-  timespec wall{};
-  clock_gettime(CLOCK_REALTIME, &wall);
-  return int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec - MonotonicNow();
+  int64_t offset_ns = 0;
+  int64_t closest_ns = kStartUpNs;
+  for (int i = 0; i < 10; ++i) {
+    const int64_t before_ns = MonotonicNow();
+    timespec wall{};
+    clock_gettime(CLOCK_REALTIME, &wall);
+    const int64_t apart_ns = MonotonicNow() - before_ns;
+    if (apart_ns >= closest_ns) continue;
+    closest_ns = apart_ns;
+    offset_ns = int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec - before_ns - apart_ns / 2;
+  }
+  return offset_ns;
 }
 
 std::string LogPath(const std::string& directory, int arm_id) {
@@ -90,14 +101,14 @@ std::string BusDown(const std::string& bus, double t_s) {
   return "bus " + bus + " went down at " + std::to_string(t_s) + " s";
 }
 
-bool CreateLogs(const FleetConfig& fleet, const std::string& directory, Logs* logs, std::string* error) {
+bool CreateLogs(const FleetConfig& fleet, const std::string& directory, int64_t wall_offset_ns, Logs* logs,
+                std::string* error) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (code) {
     *error = "cannot make " + directory + ": " + code.message();
     return false;
   }
-  const int64_t wall_offset_ns = WallOffset();
   for (const ArmEntry& arm : fleet.arms) {
     const std::string channel = "can" + std::to_string(arm.id);
     logs->push_back(CanLog::Create(LogPath(directory, arm.id), channel, wall_offset_ns, error));
@@ -108,7 +119,7 @@ bool CreateLogs(const FleetConfig& fleet, const std::string& directory, Logs* lo
 
 // The loop, and what it came to.
 HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t epoch_ns, const Buses& buses,
-                const Logs& logs, PollClock* clock) {
+                const Logs& logs, LiveFaults* live, PollClock* clock) {
   std::vector<CanLog*> log_pointers;
   for (const auto& log : logs) log_pointers.push_back(log.get());
   const CanLogWriter writer(log_pointers);  // started before the priority is raised: it keeps the low one
@@ -118,6 +129,7 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   prctl(PR_SET_TIMERSLACK, 1ul);  // without SCHED_FIFO the kernel would add up to 50 us to each wait
 
   HilServer server(scenario, options.seed, epoch_ns, buses, log_pointers, clock);
+  server.TakeFaultsFrom(live);
   std::cout << "armada-hil: " << buses.size() << " arms on, seed " << options.seed << ", epoch " << epoch_ns
             << " ns" << std::endl;
   const uint64_t heap_before = HeapCounter::Allocations();
@@ -134,12 +146,13 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   return report;
 }
 
-// Faults of boards, of the leader and of the link are no emulation's to make.
+// Faults of the link and of a board's inside are nobody's to make in real time; `armada run` makes those of
+// processes.
 void TellWhatIsLeftOut(const std::vector<FaultConfig>& faults) {
   for (const FaultConfig& fault : faults) {
-    if (MeaningOf(fault.kind).in_real_time) continue;
+    if (MeaningOf(fault.kind).maker != FaultMaker::kNobody) continue;
     std::cerr << "armada-hil: fault " << NameOf(fault.kind) << " at " << fault.at_s
-              << " s is left out: it is not of a drive or of its bus\n";
+              << " s is left out: it is of virtual time\n";
   }
 }
 
@@ -175,7 +188,9 @@ int Run(const Options& options) {
                 std::to_string(drive->node_id) + ")");
   }
   Logs logs;
-  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, &logs, &error)) return Fail(error);
+  const int64_t wall_offset_ns = WallOffset();
+  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns, &logs, &error))
+    return Fail(error);
 
   const int64_t now_ns = clock->Now();
   const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : now_ns + kStartUpNs;
@@ -185,7 +200,13 @@ int Run(const Options& options) {
     return kExitUsage;
   }
   TellWhatIsLeftOut(scenario->faults);
-  const HilReport report = Serve(*scenario, options, epoch_ns, buses, logs, clock.get());
+  std::unique_ptr<LiveFaults> live;
+  if (!options.out.empty()) {
+    live = LiveFaults::Create(options.out, LiveFaults::kOfEmulation, &error);
+    if (live == nullptr) return Fail(error);
+  }
+  HilReport report = Serve(*scenario, options, epoch_ns, buses, logs, live.get(), clock.get());
+  report.epoch_wall_ns = epoch_ns + wall_offset_ns;
   const int code = options.out.empty() ? kExitOk : WriteResults(report, logs, options.out);
   for (const HilArmResult& arm : report.arms) {
     if (arm.bus_down) return Fail(BusDown(arm.bus, report.seconds));

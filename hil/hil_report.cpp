@@ -44,12 +44,21 @@ Json ToJson(const CanLog& log) {
           {"dropped", log.dropped()}};
 }
 
+Json ToJson(const std::vector<DrivePower>& drives) {
+  Json json = Json::array();
+  for (const DrivePower& drive : drives) {
+    json.push_back({{"on_s", OrNull(drive.on_s)}, {"off_s", OrNull(drive.off_s)}});
+  }
+  return json;
+}
+
 Json ToJson(const HilArmResult& arm, const CanLog& log) {
   const bool measured =
       arm.record && arm.record->count() > 0;  // the window was reached, and there is a leader
   return {{"id", arm.id},
           {"diverged", arm.diverged},
           {"released_s", OrNull(arm.released_s)},
+          {"drives", ToJson(arm.drives)},
           {"settled_s", arm.record ? OrNull(arm.record->settled_s()) : Json(nullptr)},
           {"rms_mm", measured ? Json(arm.record->rms_m() * 1e3) : Json(nullptr)},
           {"max_mm", measured ? Json(arm.record->max_m() * 1e3) : Json(nullptr)},
@@ -78,6 +87,7 @@ bool WriteHilReport(const HilReport& report, const std::vector<std::unique_ptr<C
       {"scenario", report.scenario},
       {"seed", report.seed},
       {"epoch_ns", report.epoch_ns},
+      {"epoch_wall_ns", report.epoch_wall_ns},
       {"seconds", report.seconds},
       {"end", NameOf(report.end)},
       {"arms", arms},

@@ -16,7 +16,8 @@ struct HilReport {
   std::string scenario;
   uint64_t seed = 0;
   int64_t epoch_ns = 0;
-  double seconds = 0.0;  ///< fleet time that was run
+  int64_t epoch_wall_ns = 0;  ///< the same on the clock that witnesses stamp frames with
+  double seconds = 0.0;       ///< fleet time that was run
   HilEnd end = HilEnd::kDone;
   std::vector<HilArmResult> arms;
   DurationHistogram pacing;

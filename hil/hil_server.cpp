@@ -53,6 +53,7 @@ HilEnd HilServer::Run(double seconds) {
   while (clock_->WaitUntil(std::min(next_tick_ns_, end_ns))) {
     const int64_t now_ns = clock_->Now();
     const int64_t until_ns = std::min(now_ns, end_ns);
+    if (next_tick_ns_ <= until_ns) TakeLiveFaults(now_ns);
     for (; next_tick_ns_ <= until_ns; next_tick_ns_ += kTick_ns) pacing_.Add(now_ns - next_tick_ns_);
     for (Arm& arm : arms_) {
       TakeFrames(arm, end_ns);
@@ -62,6 +63,15 @@ HilEnd HilServer::Run(double seconds) {
     if (now_ns >= end_ns) return HilEnd::kDone;
   }
   return HilEnd::kStopped;
+}
+
+void HilServer::TakeLiveFaults(int64_t now_ns) {
+  if (live_ == nullptr) return;
+  while (const auto fault = live_->Take(FleetTime(now_ns))) {
+    for (Arm& arm : arms_) {
+      if (arm.id == fault->arm) arm.bench.Add(*fault);
+    }
+  }
 }
 
 void HilServer::TakeFrames(Arm& arm, int64_t end_ns) {
@@ -129,6 +139,7 @@ std::vector<HilArmResult> HilServer::Results() const {
                        .bus_down = arm.bus_down,
                        .diverged = arm.bench.diverged(),
                        .released_s = arm.released_s,
+                       .drives = arm.bench.power(),
                        .record = leader_ ? std::optional(arm.record) : std::nullopt,
                        .counters = arm.bus->counters(),
                        .bus_load = arm.time_ns > epoch_ns_ ? arm.on_wire_s / FleetTime(arm.time_ns) : 0.0});

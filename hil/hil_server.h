@@ -11,6 +11,7 @@
 #include "hil/emulated_arm.h"
 #include "hil/hil_clock.h"
 #include "hil/leader_path.h"
+#include "hil/live_faults.h"
 #include "hil/tracking_record.h"
 
 namespace armada {
@@ -25,6 +26,7 @@ struct HilArmResult {
   bool bus_down = false;
   bool diverged = false;
   std::optional<double> released_s;  ///< when the brakes opened; never without every drive in torque mode
+  std::vector<DrivePower> drives;    ///< in the order of the joints
   /// None in a leaderless scenario: there is nothing to measure against.
   std::optional<TrackingRecord> record;
   BusCounters counters;
@@ -35,7 +37,8 @@ struct HilArmResult {
 /// frames that come in, each taken at its time of reception, and with the milliseconds of the fleet's clock,
 /// in each of which its error is sampled. A server that wakes late therefore computes the motion it would
 /// have computed in time, sample for sample; only its answers are late, and pacing() tells by how much.
-/// Allocates in the constructor only.
+/// Allocates in the constructor only, and
+/// for a fault that comes while it runs.
 class HilServer {
  public:
   /// Switches the benches on, now. `buses`, one an arm in the fleet's order, and `logs`, as many or none,
@@ -45,6 +48,9 @@ class HilServer {
             HilClock* clock);
   HilServer(const HilServer&) = delete;
   HilServer& operator=(const HilServer&) = delete;
+
+  /// Takes faults while it runs from `live`, which outlives the object.
+  void TakeFaultsFrom(LiveFaults* live) { live_ = live; }
 
   /// Runs until `seconds` after the epoch, or until the clock says that the run is to end.
   HilEnd Run(double seconds);
@@ -72,6 +78,7 @@ class HilServer {
   };
 
   double FleetTime(int64_t t_ns) const { return static_cast<double>(t_ns - epoch_ns_) / 1e9; }
+  void TakeLiveFaults(int64_t now_ns);
   void TakeFrames(Arm& arm, int64_t end_ns);
   /// Goes through every millisecond on the way.
   void AdvanceTo(Arm& arm, int64_t t_ns);
@@ -82,6 +89,7 @@ class HilServer {
 
   int64_t epoch_ns_;
   HilClock* clock_;
+  LiveFaults* live_ = nullptr;
   std::optional<LeaderPath> leader_;
   std::vector<Arm> arms_;
   int64_t next_tick_ns_;

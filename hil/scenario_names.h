@@ -65,6 +65,7 @@ constexpr auto EnumNames(FaultKind) {
                                                                 {kControllerStops, "controller_stops"},
                                                                 {kControllerRestarts, "controller_restarts"},
                                                                 {kSlowTick, "slow_tick"},
+                                                                {kCpuHog, "cpu_hog"},
                                                                 {kLeaderDies, "leader_dies"},
                                                                 {kLeaderStops, "leader_stops"},
                                                                 {kLeaderJumps, "leader_jumps"},

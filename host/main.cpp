@@ -11,6 +11,7 @@
 #include "host/can/can_command.h"
 #include "host/check.h"
 #include "host/ctl/ctl_command.h"
+#include "host/fault/fault_command.h"
 #include "host/fault/storm_command.h"
 #include "host/fleet/fleet_command.h"
 #include "host/floor/floor_command.h"
@@ -151,6 +152,7 @@ int main(int argc, char** argv) {
   AddCtlCommand(&app, &code);
   AddFleetCommand(&app, &code);
   AddKeyCommand(&app, &code);
+  AddFaultCommand(&app, &code);
   AddStormCommand(&app, &code);
 
   app.add_subcommand("params", "print the reference of all parameters (docs/parameters.md)")->callback([] {

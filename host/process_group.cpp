@@ -223,6 +223,12 @@ std::optional<ProcessExit> ProcessGroup::Poll(Duration timeout) {
   return ReapUntil(Clock::now() + timeout, /*heed_stop=*/true);
 }
 
+bool ProcessGroup::Signal(const std::string& name, int signal_number) const {
+  const auto child =
+      std::find_if(children_.begin(), children_.end(), [&](const Child& c) { return c.name == name; });
+  return child != children_.end() && kill(-child->pid, signal_number) == 0;
+}
+
 std::vector<ProcessExit> ProcessGroup::StopAll(Duration grace) {
   std::vector<ProcessExit> exits;
   const auto collect_until = [&](Clock::time_point deadline) {

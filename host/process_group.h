@@ -63,6 +63,9 @@ class ProcessGroup {
   /// wait.
   std::optional<ProcessExit> Poll(Duration timeout = Duration::zero());
 
+  /// Sends a signal to a program and its descendants. False if there is none of that name.
+  bool Signal(const std::string& name, int signal_number) const;
+
   /// Asks all programs to end (SIGTERM), kills after `grace` those that have not, and tells how each one
   /// ended.
   std::vector<ProcessExit> StopAll(Duration grace);

@@ -34,6 +34,7 @@ ArmNode::ArmNode(const FleetConfig& fleet, size_t index, const ArmInitialState& 
       desk_(id_, start.identity, start.fleet_digest, fleet.link.command_age_max_s),
       bus_watch_(fleet.timing, fleet.arms[index].control.supervisor),
       controller_(fleet.ControllerConfig(index), initial, start.mode),
+      estimate_age_max_ns_(std::llround(fleet.link.age_max_s * 1e9)),
       estimate_counts_(start.mode == StartMode::kRunning) {
   const auto dof = static_cast<Eigen::Index>(joints_.size());
   input_.q_rad = JointVector::Zero(dof);
@@ -61,9 +62,11 @@ std::span<const uint8_t> ArmNode::EncodeEstimate(int64_t tick_ns, MessageBuffer*
   message.fleet_digest = fleet_digest_;
   message.agreement = static_cast<int16_t>(controller_.estimator().agreement());
   const double leader_age_s = controller_.estimator().leader_age_s();
-  // A board that starts anew among others, or hears of the leader again after it has lost it, must not draw
-  // them to where it is.
-  estimate_counts_ = !controller_.leader_lost() && (estimate_counts_ || controller_.estimator().in_band());
+  // A board that starts anew among others, that hears of the leader again after it has lost it, or that got
+  // no time for a while, must not draw them to where it is.
+  const bool slept = tick_ns - message.stamp_ns > estimate_age_max_ns_;
+  estimate_counts_ =
+      !slept && !controller_.leader_lost() && (estimate_counts_ || controller_.estimator().in_band());
   const bool knows = estimate_counts_ && std::isfinite(leader_age_s);
   message.leader_age_s = knows ? static_cast<float>(leader_age_s) : kNoLeader;
   Copy(zeta.x_m, message.x_m);
@@ -114,7 +117,7 @@ void ArmNode::HearOthers(int64_t tick_ns) {
   input_.neighbours_good = neighbours_good_ticks_ >= good_ticks_needed_;
   for (int j = 0; hold_with_neighbours_ && j < input_.neighbours.count; ++j) {
     const Neighbour& neighbour = input_.neighbours.list[static_cast<size_t>(j)];
-    input_.causes.Set(Cause::kFleetStop, neighbour.stopped && !neighbour.silent);
+    input_.causes.Set(Cause::kFleetStop, neighbour.stopped || neighbour.silent);  // the dead tell nothing
   }
 }
 

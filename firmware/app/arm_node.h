@@ -102,7 +102,8 @@ class ArmNode {
   int neighbours_good_ticks_ = 0;
   int64_t fault_ns_ = 0;
   bool was_at_rest_ = false;  ///< when the fault came
-  bool estimate_counts_;      ///< it may be passed on as news of the leader
+  int64_t estimate_age_max_ns_;
+  bool estimate_counts_;  ///< it may be passed on as news of the leader
   int64_t estimate_sequence_ = 0;
   int64_t telemetry_sequence_ = 0;
 };

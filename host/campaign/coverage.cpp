@@ -4,13 +4,15 @@
 #include <cstdio>
 #include <ostream>
 
+#include "hil/fault_meaning.h"
 #include "hil/scenario_names.h"
 
 namespace armada {
 
 Coverage::Coverage() {
   for (const auto& [kind, name] : EnumNames(FaultKind{})) {
-    if (kind != FaultKind::kDrive) cells_.push_back({kind, FaultSignal::kNone, FaultWay::kNone});
+    if (kind != FaultKind::kDrive && MeaningOf(kind).maker != FaultMaker::kRunOnly)
+      cells_.push_back({kind, FaultSignal::kNone, FaultWay::kNone});
   }
   for (const auto& [signal, signal_name] : EnumNames(FaultSignal{})) {
     for (const auto& [way, way_name] : EnumNames(FaultWay{})) {

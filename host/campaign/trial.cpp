@@ -90,10 +90,15 @@ bool TellsStatus(const ArmEntry& arm, int joint) {
                                   [](const JointDriveConfig& drive) { return TellsStatus(drive); });
 }
 
-/// Every kind as often as every other but the drives' signals, of which there are 28.
+/// Every kind that virtual time knows as often as every other but the drives' signals, of which there are 28.
 FaultKind DrawKind(Dice* dice) {
   constexpr auto kKinds = EnumNames(FaultKind{});
-  return dice->Comes(0.4) ? FaultKind::kDrive : dice->OneOf(kKinds).first;
+  FaultKind kind = FaultKind::kDrive;
+  if (dice->Comes(0.4)) return kind;
+  do {
+    kind = dice->OneOf(kKinds).first;
+  } while (MeaningOf(kind).maker == FaultMaker::kRunOnly);
+  return kind;
 }
 
 void DrawSignal(const ArmEntry& arm, Dice* dice, FaultConfig* fault) {

@@ -13,12 +13,14 @@
 #include "firmware/app/initial_state.h"
 #include "firmware/app/realtime.h"
 #include "firmware/can/bus_name.h"
+#include "hil/live_faults.h"
 #include "hil/scenario_file.h"
 #include "hil/start_state.h"
 #include "host/arm_table.h"
 #include "host/private_network.h"
 #include "host/process_group.h"
 #include "host/run/board_networks.h"
+#include "host/run/process_faults.h"
 #include "host/run/run_buses.h"
 #include "host/run/run_in_vm.h"
 #include "host/run/run_recorder.h"
@@ -77,9 +79,13 @@ class Run {
   bool MakeNetworks(std::string* error);
   bool MakeBoardNetworks(std::string* error);
   bool StartAll(ProcessGroup* group, std::string* error);
+  bool StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error);
+  std::map<int, std::string> BoardInterfaces() const;
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
   bool FinishedItsRun(const ProcessExit& ended) const;
+  bool MakeFaults(ProcessGroup* group, std::string* error);
+  void TakeLiveFaults();
   void ShowProgress();
   std::string Program(const char* name) const {
     return (fs::path(options_.program_directory) / name).string();
@@ -95,6 +101,9 @@ class Run {
   int64_t epoch_ns_ = 0;
   std::unique_ptr<LcmEndpoint> link_;
   std::unique_ptr<RunRecorder> recorder_;
+  std::optional<ProcessFaults> faults_;
+  std::unique_ptr<LiveFaults> live_faults_;
+  size_t running_ = 0;  ///< programs whose end is awaited
   bool interrupted_ = false;
 };
 
@@ -109,7 +118,9 @@ bool Run::MakeKey(std::string* error) {
 }
 
 bool Run::WriteInputs(std::string* error) {
-  if (!PrepareFolder(out_, error) || !MakeKey(error) || !WriteEffective(scenario_, out_.string(), error))
+  if (!PrepareFolder(out_, error)) return false;
+  live_faults_ = LiveFaults::Create(out_.string(), LiveFaults::kOfProcesses, error);
+  if (live_faults_ == nullptr || !MakeKey(error) || !WriteEffective(scenario_, out_.string(), error))
     return false;
   std::optional<LeaderPath> leader;
   if (scenario_.leader.kind != LeaderKind::kNone) leader.emplace(scenario_.leader);
@@ -200,21 +211,47 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
   for (const std::string& bus : options_.hil_buses) hil.insert(hil.end(), {"--bus", bus});
   if (!Start(group, "hil", std::move(hil), error)) return false;
   for (const ArmEntry& arm : scenario_.fleet.arms) {
-    const std::string id = std::to_string(arm.id);
-    std::vector<std::string> board;
-    if (options_.namespaces) board = BoardNetworks::Prefix(arm.id);
-    board.insert(board.end(), {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", epoch,
-                               "--seconds", Seconds(), "--initial", In("initial_" + id + ".toml"),
-                               "--learned", LearnedFile(In("learned"), arm.id), "--state", In("state"),
-                               "--json", In("arm_" + id + ".json")});
-    if (scenario_.start.mode == StartMode::kRunning) board.emplace_back("--running");
-    if (!Start(group, "arm " + id, std::move(board), error)) return false;
+    if (!StartBoard(arm.id, false, group, error)) return false;
   }
-  return scenario_.leader.kind == LeaderKind::kNone ||
-         Start(group, "leader",
-               {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds(),
-                "--state", In("state")},
-               error);
+  if (scenario_.leader.kind != LeaderKind::kNone &&
+      !Start(group, ProcessFaults::kLeaderProcess,
+             {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds(),
+              "--state", In("state")},
+             error)) {
+    return false;
+  }
+  running_ = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
+  faults_.emplace(scenario_.faults, BoardInterfaces(), epoch_ns_,
+                  epoch_ns_ + static_cast<int64_t>(scenario_.seconds * 1e9));
+  return true;
+}
+
+// A board that starts anew comes up as one does that an operator has switched on: in MONITOR, drives off.
+bool Run::StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error) {
+  const std::string id = std::to_string(arm_id);
+  std::vector<std::string> board;
+  if (options_.namespaces) board = BoardNetworks::Prefix(arm_id);
+  board.insert(board.end(),
+               {Program("armada-arm"), In("fleet.toml"), "--arm", id, "--epoch-ns", std::to_string(epoch_ns_),
+                "--seconds", Seconds(), "--learned", LearnedFile(In("learned"), arm_id), "--state",
+                In("state"), "--json", In("arm_" + id + ".json")});
+  if (!anew) board.insert(board.end(), {"--initial", In("initial_" + id + ".toml")});
+  if (!anew && scenario_.start.mode == StartMode::kRunning) board.emplace_back("--running");
+  const std::string log = In("arm_" + id + (anew ? "_anew" : "") + ".txt");
+  return group->Start({ProcessFaults::ArmProcess(arm_id), std::move(board), {}, log}, error);
+}
+
+// Where the emulation has another end of the bus, the board's can go down without it.
+std::map<int, std::string> Run::BoardInterfaces() const {
+  std::map<int, std::string> interfaces;
+  for (const ArmEntry& arm : scenario_.fleet.arms) {
+    const std::string own = SocketCanInterface(arm.bus);
+    const bool apart =
+        std::any_of(options_.hil_buses.begin(), options_.hil_buses.end(),
+                    [&](const std::string& bus) { return bus.starts_with(std::to_string(arm.id) + "="); });
+    if (apart && !own.empty()) interfaces[arm.id] = own;
+  }
+  return interfaces;
 }
 
 void Run::ShowProgress() {
@@ -243,25 +280,42 @@ void Run::ShowProgress() {
 // A board that ended in FAULT exits with 1, but has done its run and reported: that is a result, not a crash.
 bool Run::FinishedItsRun(const ProcessExit& ended) const {
   return std::any_of(scenario_.fleet.arms.begin(), scenario_.fleet.arms.end(), [&](const ArmEntry& arm) {
-    return ended.name == "arm " + std::to_string(arm.id) &&
+    return ended.name == ProcessFaults::ArmProcess(arm.id) &&
            fs::exists(out_ / ("arm_" + std::to_string(arm.id) + ".json"));
   });
+}
+
+void Run::TakeLiveFaults() {
+  const double now_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
+  while (const auto fault = live_faults_->Take(now_s)) faults_->Add(*fault);
+}
+
+bool Run::MakeFaults(ProcessGroup* group, std::string* error) {
+  return faults_->MakeDue(
+      group,
+      [&](int arm_id, std::string* why) {
+        ++running_;
+        return StartBoard(arm_id, true, group, why);
+      },
+      error);
 }
 
 bool Run::Watch(ProcessGroup* group, std::string* error) {
   const int64_t end_ns = epoch_ns_ + static_cast<int64_t>((scenario_.seconds + kOverrun_s) * 1e9);
   const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
-  size_t running = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
   int64_t next_progress_ns = 0;
-  while (running > 0) {
-    const auto ended = group->Poll(milliseconds(5));
+  while (running_ > faults_->stopped_for_good()) {
+    const auto ended = group->Poll(faults_->TimeLeft(milliseconds(5)));
     link_->Drain([&](const LcmMessage& message) { recorder_->OnMessage(message); });
+    TakeLiveFaults();
+    if (!MakeFaults(group, error)) return false;
     if (ended) {
-      if ((!ended->Succeeded() && !FinishedItsRun(*ended)) || ended->name == "lcm-logger") {
+      const bool well = ended->Succeeded() || faults_->TakeOrdered(*ended) || FinishedItsRun(*ended);
+      if (!well || ended->name == "lcm-logger") {
         *error = ended->Describe();
         return false;
       }
-      --running;
+      --running_;
     }
     if (ProcessGroup::StopRequested()) {
       interrupted_ = true;
@@ -285,6 +339,7 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
 bool Run::Execute(std::string* error) {
   ProcessGroup group;
   const bool done = StartAll(&group, error) && Watch(&group, error);
+  if (faults_) faults_->KillStopped(&group);
   group.StopAll(milliseconds(2000));
   return done;
 }
@@ -295,7 +350,7 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
     return false;
   }
   if (!recorder_->WriteTraces(out_.string(), error)) return false;
-  if (!CollectRunResult(scenario_, options_.seed, *recorder_, out_.string(), metrics, json, error))
+  if (!CollectRunResult(scenario_, options_.seed, *recorder_, *faults_, out_.string(), metrics, json, error))
     return false;
   if (!WriteJson(*json, In("metrics.json"), error)) return false;
   return options_.json.empty() || WriteJson(*json, options_.json, error);

@@ -39,10 +39,19 @@ void TakeTracking(const Json& of_arm, const TrackingRecord& seen, ArmMetrics* ar
   arm->max_m = 1e-3 * of_arm.at("max_mm").get<double>();
 }
 
+Json ToJson(const std::vector<ProcessFaults::Made>& faults) {
+  Json json = Json::array();
+  for (const ProcessFaults::Made& made : faults) {
+    json.push_back({{"what", made.what}, {"to", made.to}, {"at_s", made.at_s}, {"made_s", made.made_s}});
+  }
+  return json;
+}
+
 }  // namespace
 
 bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRecorder& recorder,
-                      const std::string& directory, RunMetrics* metrics, Json* json, std::string* error) {
+                      const ProcessFaults& faults, const std::string& directory, RunMetrics* metrics,
+                      Json* json, std::string* error) {
   const auto hil = ReadJson(directory + "/hil.json", error);
   if (!hil) return false;
   metrics->scenario = scenario.name;
@@ -55,27 +64,30 @@ bool CollectRunResult(const ScenarioConfig& scenario, uint64_t seed, const RunRe
   metrics->window_start_s = scenario.window_start_s;
   metrics->estimate_spread_m = recorder.EstimateSpread();
 
-  std::vector<Json> boards;
+  std::vector<std::optional<Json>> boards;
   try {
     for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
-      const auto board =
-          ReadJson(directory + "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json", error);
-      if (!board) return false;
+      const int id = scenario.fleet.arms[i].id;
+      const bool dead = faults.dead_arms().contains(id);
+      auto& board = boards.emplace_back();
+      if (!dead) board = ReadJson(directory + "/arm_" + std::to_string(id) + ".json", error);
+      if (!dead && !board) return false;
       ArmMetrics arm = recorder.Metrics(i);
       TakeTracking(hil->at("arms").at(i), recorder.Tracking(i), &arm);
-      arm.state = board->at("state").get<std::string>();
-      arm.faults = board->at("faults").get<std::vector<std::string>>();
+      arm.state = dead ? "DEAD" : board->at("state").get<std::string>();
+      if (!dead) arm.faults = board->at("faults").get<std::vector<std::string>>();
       metrics->arms.push_back(std::move(arm));
-      boards.push_back(*board);
     }
     metrics->Judge(scenario.criterion);
     *json = ToJson(*metrics);
     for (size_t i = 0; i < boards.size(); ++i) {
-      for (const char* section : {"timing", "memory", "bus"})
-        (*json)["arms"][i][section] = boards[i].at(section);
+      for (const char* section : {"timing", "memory", "bus"}) {
+        if (boards[i]) (*json)["arms"][i][section] = boards[i]->at(section);
+      }
       Json& bus = (*json)["arms"][i]["bus"];
       bus["can_load"] = hil->at("arms").at(i).at("bus").at("can_load");
     }
+    if (!faults.made().empty()) (*json)["process_faults"] = ToJson(faults.made());
     (*json)["hil"] = {{"name", "hil"}, {"timing", hil->at("timing")}, {"memory", hil->at("memory")}};
   } catch (const nlohmann::json::exception& exception) {
     *error = directory + ": " + exception.what();
@@ -88,6 +100,7 @@ void PrintProcessTable(const Json& json, std::ostream& out) {
   out << "arm  lateness_us: p50    p99      max  compute_us: p50    p99  sample->torque_us: p50    p99  "
          "missed  heap  faults\n";
   for (const Json& arm : json.at("arms")) {
+    if (!arm.contains("timing")) continue;  // its controller is dead
     const Json& timing = arm.at("timing");
     const Json& memory = arm.at("memory");
     const auto us = [&](const char* what, const char* which) {

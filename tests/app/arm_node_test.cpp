@@ -113,6 +113,21 @@ TEST_F(Board, IsReadyAfterTheBringUpAndThenRuns) {
   EXPECT_TRUE(bench_.released());
 }
 
+// It would draw those who hear it to where the leader was.
+TEST_F(Board, ThatGotNoTimeForAWhileTellsNobodyOfTheLeaderBeforeItHasNewsAgain) {
+  estimate_t estimate{};
+  const auto leader_age_s = [&](int64_t k) {
+    EXPECT_TRUE(Decode(node_.EncodeEstimate(NanosecondsOf(k), &buffer_), &estimate));
+    return estimate.leader_age_s;
+  };
+  for (int64_t k = 0; k < 50; ++k) Tick(k);
+  EXPECT_GE(leader_age_s(50), 0.0F);
+  EXPECT_GE(leader_age_s(51), 0.0F) << "a missed tick is nothing";
+  EXPECT_LT(leader_age_s(80), 0.0F);
+  for (int64_t k = 80; k < 120; ++k) Tick(k);
+  EXPECT_GE(leader_age_s(120), 0.0F);
+}
+
 TEST_F(Board, PredictsOverASingleMissingSample) {
   for (int64_t k = 0; k < 5; ++k) Tick(k);
   deaf_to_ = 1;

@@ -98,6 +98,19 @@ TEST(Faults, ADeadControllerTakesItsArmAloneOut) {
   }
 }
 
+// Arms 2 and 4 hear arm 1, and arm 3 as well.
+TEST(Faults, ADeadControllerStopsThoseThatHearItWhereTheFleetHoldsTogether) {
+  std::vector<std::string> sets = With("{kind=\"controller_dies\",at_s=2.5,arm=1}");
+  for (const char* policy : {"carry_on", "hold"}) {
+    sets.push_back("control.supervisor.fleet_stop=\"" + std::string(policy) + "\"");
+    const RunMetrics metrics = Simulate("benign", 1, sets);
+    for (const int id : {2, 4})
+      EXPECT_EQ(Arm(metrics, id).state, policy == std::string("hold") ? "HOLD" : "RUN");
+    for (const int id : {3, 5, 6, 7}) EXPECT_EQ(Arm(metrics, id).state, "RUN") << policy << id;
+    sets.pop_back();
+  }
+}
+
 TEST(Faults, AControllerThatMissesATickTracksOn) {
   const RunMetrics metrics =
       Simulate("benign", 1, With("{kind=\"controller_stops\",at_s=2.5,until_s=2.51,arm=1}"));

@@ -83,6 +83,21 @@ TEST(EmulatedArm, StandsOnItsBrakesUntilEveryDriveIsEnabled) {
   EXPECT_NE(bench.arm().plant().q_rad, MovingStart().q_rad);
 }
 
+TEST(EmulatedArm, TellsWhenEachDrivesPowerCameOnAndWentOff) {
+  ScenarioConfig scenario = Scenario(2);
+  scenario.drive.watchdog_s = 0.03;
+  Bench bench(scenario);
+  bench.Send(-0.4795, odrive::EncodeClearErrors(0));
+  bench.Enable(-0.4795, 0);
+  bench.Torque(-0.4611234, 0, 1.0f);
+  bench.AdvanceTo(0.1);
+  ASSERT_EQ(bench.arm().power().size(), 2u);
+  EXPECT_NEAR(bench.arm().power()[0].on_s.value(), -0.4795, 1e-9);
+  EXPECT_NEAR(bench.arm().power()[0].off_s.value(), -0.4311234, 1e-9)
+      << "by its watchdog, not to the millisecond";
+  EXPECT_FALSE(bench.arm().power()[1].on_s || bench.arm().power()[1].off_s) << "it was never on";
+}
+
 TEST(EmulatedArm, EnabledEarlyIsLetGoAtTimeZero) {
   Bench bench(Scenario(2), MovingStart());
   bench.EnableAll(-0.4);

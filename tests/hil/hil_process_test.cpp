@@ -210,12 +210,14 @@ TEST_F(HilProcessTest, EndsByItselfAfterItsSeconds) {
 
 TEST_F(HilProcessTest, HasFaultsOfDrivesAndBusesAndSaysWhatItLeavesOut) {
   const std::string of_drive = R"({kind="drive",at_s=0.1,arm=4,signal="status",way="off"})";
-  const std::string of_leader = R"({kind="leader_dies",at_s=0.2})";
+  const std::string of_leader = R"({kind="leader_dies",at_s=0.1})";
+  const std::string of_link = R"({kind="link_loss",arm=4,at_s=0.2,value=0.5})";
   Start("hil", {Scenario(), "--seconds", "0.25", "--out", Out(), "--set",
-                "fault=[" + of_drive + "," + of_leader + "]"});
+                "fault=[" + of_drive + "," + of_leader + "," + of_link + "]"});
   EXPECT_EQ(ExitCode(), kExitOk) << Said("hil");
-  EXPECT_NE(Said("hil").find("fault leader_dies at 0.2 s is left out"), std::string::npos) << Said("hil");
+  EXPECT_NE(Said("hil").find("fault link_loss at 0.2 s is left out"), std::string::npos) << Said("hil");
   EXPECT_EQ(Said("hil").find("fault drive"), std::string::npos) << Said("hil");
+  EXPECT_EQ(Said("hil").find("fault leader_dies"), std::string::npos) << "armada run makes it";
 }
 
 TEST_F(HilProcessTest, StandsReadyBeforeTheGivenEpoch) {

@@ -73,13 +73,17 @@ silent_about() { ! says "$1"; }
 given '' 0 0
 when dance
 check 'an unknown command is a usage error' test "$code" = 2
-check 'and its message names what there is' says "unknown command 'dance'; there are: build, demo, fuzz, hil, test, help"
+check 'and its message names what there is' says "unknown command 'dance'; there are: build, campaign, demo, fuzz, hil, test, help"
 when test -R
 check '-R without a pattern is a usage error' test "$code" = 2
 when build now
 check 'build takes no arguments' test "$code" = 2
 when hil now
 check 'hil takes no arguments' test "$code" = 2
+when campaign --phases many
+check 'the phases of a campaign are a number' test "$code" = 2
+when campaign --seed
+check 'and an option of it has a value' test "$code" = 2
 when help
 check 'help succeeds' test "$code" = 0
 check 'none of them installs or builds anything' test ! -s apt_calls -a ! -e cmake_calls
@@ -129,6 +133,8 @@ mkdir -p project/hil/vm
 printf '#!/bin/bash\necho "image into $ARMADA_VM_CACHE" >>%q\n' "$box/vm_calls" >project/hil/vm/image
 printf '#!/bin/bash\necho "hil $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' "$box/vm_calls" \
   >project/hil/vm/hil
+printf '#!/bin/bash\necho "campaign $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' \
+  "$box/vm_calls" >project/hil/vm/campaign
 chmod +x project/hil/vm/*
 export ARMADA_VM_CACHE=$box/kernels
 given '' 0 0
@@ -140,6 +146,15 @@ check 'and prints the figures' says 'figures'
 given '' 0 1
 when hil
 check 'a hil that fails is a failure' test "$code" = 1
+given '' 0 0
+: >vm_calls
+when campaign --phases 20 --seed 3
+check 'a campaign gets the kernels, then runs with its options' test "$(cat vm_calls)" = "$(printf '%s\n' \
+  "image into $box/kernels" "campaign build/release/bin out/campaign --phases 20 --seed 3 $box/kernels")"
+check 'and prints the figures' says 'figures'
+given '' 0 1
+when campaign
+check 'a campaign with a finding is a failure' test "$code" = 1
 given 'qemu-system-x86' 0 0
 when hil
 check 'hil installs the virtual machine' says "qemu-system-x86      runs Debian's kernels"
