@@ -1,5 +1,7 @@
 #include "firmware/core/arm_controller.h"
 
+#include <limits>
+
 namespace armada {
 namespace {
 
@@ -8,6 +10,13 @@ std::variant<RobustLaw, PaperLaw> MakeLaw(const ArmControllerConfig& config, con
   if (config.control.law == LawKind::kPaper) return PaperLaw(config.control, arm, initial.theta_hat);
   return RobustLaw(config.control, arm, initial.theta_hat, config.torque_limit_Nm,
                    config.timing.sample_to_torque_s, initial.P_theta);
+}
+
+// The printed law comes no nearer than a few centimetres, and is to be seen doing so.
+SupervisorConfig WatchConfig(const ControlConfig& control) {
+  SupervisorConfig config = control.supervisor;
+  if (control.law == LawKind::kPaper) config.follow_max_s = std::numeric_limits<double>::infinity();
+  return config;
 }
 
 }  // namespace
@@ -20,7 +29,7 @@ ArmController::ArmController(const ArmControllerConfig& config, const ArmInitial
       initial_(initial),
       law_(MakeLaw(config, arm_, initial)),
       hold_law_(config.control.supervisor),
-      watch_(config.control.supervisor, config.arm),
+      watch_(WatchConfig(config.control), config.arm),
       supervisor_(config.control.supervisor, start),
       gate_(config.torque_limit_Nm) {
   status_.x_m = TaskVector::Zero(PlanarArm::kTaskDim);

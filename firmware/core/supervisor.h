@@ -74,7 +74,7 @@ struct SupervisorConfig {
         following_error_m);
     parameter({"following_s", "s", 0, 100, "for this long"}, following_s);
     parameter({"follow_max_s", "s", 0.1, 1e6,
-               "time within which an arm that knows the leader must have come to follow it"},
+               "law = robust: time within which an arm that knows the leader must have come to follow it"},
               follow_max_s);
     parameter({"joint_limit_margin_rad", "rad", 0, 10,
                "way beyond q_min_rad or q_max_rad from which on a joint has crossed its limit"},

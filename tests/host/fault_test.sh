@@ -7,7 +7,7 @@ armada=$bin/armada
 work=$(mktemp -d)
 trap 'kill "$run" 2>/dev/null; wait; rm -rf "$work"' EXIT
 . "$source/tests/host/expect.sh"
-out=$work/out
+out=$work/run
 
 "$armada" run "$source/hil/scenarios/campaign.toml" --seconds 6 --out "$out" >"$work/run.txt" 2>&1 &
 run=$!
