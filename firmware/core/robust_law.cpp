@@ -27,6 +27,7 @@ RobustLaw::RobustLaw(const ControlConfig& config, const PlanarArm& arm, const Pa
       filter_(config.sensor, config.disturbance, config.adaptation,
               CovarianceAtStart(config.adaptation, P_theta, theta_hat.size()), arm),
       governor_(config.governor, JointVector::Zero(arm.dof())),
+      dq_r_start_rad_s_(JointVector::Zero(arm.dof())),
       tau_committed_Nm_(JointVector::Zero(arm.dof())),
       tau_before_Nm_(JointVector::Zero(arm.dof())) {
   Project(config_.projection, arm_, theta_hat_);

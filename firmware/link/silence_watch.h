@@ -9,7 +9,7 @@ namespace armada {
 class SilenceWatch {
  public:
   struct Config {
-    int messages = 8;
+    int messages = 7;
     double chance = 1e-9;
     double memory = 50.0;
     double loss_max = 0.9;

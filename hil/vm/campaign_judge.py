@@ -25,7 +25,7 @@ HOLD_S = 0.110
 ERROR_M = 0.020
 FOLLOWS_S = 0.6  # from then on a fleet that has started near the leader follows it
 NOTICED_S = 0.120  # a silence of that length is noticed by all
-UNNOTICED_S = 0.070  # and one of that length by none
+UNNOTICED_S = 0.055  # and one of that length by none
 LATE_S = 0.002  # a fault that was made later is another one
 TORQUES_AFTER_S = 0.110  # a heartbeat and a tick: by then a board that was stopped knows that its drives are off
 PERIOD_S = 0.010
@@ -328,9 +328,8 @@ class Judge:
             self.complain(f"arm {arm} is not heard after {last:.3f} s")
 
     def holds(self, arm, ticks, at_s, hops, disturbed, hog_s, silences):
-        """What makes the arm hold came at that time, so many hops away: each one more tells it, and is heard."""
-        bound_s = HOLD_S + (hops - 1) * 2 * PERIOD_S
-        by_s = at_s + bound_s
+        """What makes the arm hold came at that time, so many hops away."""
+        by_s = at_s + HOLD_S
         undisturbed = not at_s - NOTICED_S < disturbed.get(arm, -math.inf) < by_s
         silent = any(s.who == arm and s.from_s < by_s and s.until_s > at_s - NOTICED_S for s in silences)
         if silent or not undisturbed or by_s > min(hog_s, self.end_s):
@@ -338,7 +337,7 @@ class Judge:
         since = [tick for tick in ticks if tick.t_s > at_s]
         following = [tick for tick in since if tick.state in (RUN, DEGRADED)]
         if not since or any(tick.t_s > by_s for tick in following):
-            return self.complain(f"arm {arm}: follows {1e3 * bound_s:.0f} ms after {at_s:.6f} s, when it should hold")
+            return self.complain(f"arm {arm}: follows {1e3 * HOLD_S:.0f} ms after {at_s:.6f} s, when it should hold")
         if following:
             first = next((tick.t_s for tick in since if tick.t_s > following[-1].t_s), math.inf)
             self.figure("hold_ms" if hops == 1 else "hold_behind_ms", 1e3 * (first - at_s))

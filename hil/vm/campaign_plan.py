@@ -15,13 +15,13 @@ ARMS = range(1, 8)
 SETTLED_S = 0.8  # every arm follows: fleets start near the leader
 GAP_S = (0.20, 0.45)  # what a phase changes is there within 0.11 s
 HOG_PRIORITY = 82  # above the boards' 80, below the emulated drives' 85: hardware is not slowed down
-# Of the kills and stops, by weight: what happens, and for how long. What is not within 70 to 130 ms is for sure
+# Of the kills and stops, by weight: what happens, and for how long. What is not within 55 to 130 ms is for sure
 # noticed by the others, or not.
 KINDS = (
     (40, "controller_dies", None),
     (15, "controller_stops", None),
     (20, "controller_stops", (0.130, 0.400)),
-    (10, "controller_stops", (0.031, 0.070)),
+    (10, "controller_stops", (0.031, 0.055)),
     (10, "controller_stops", (0.001, 0.030)),
     (5, "controller_restarts", (0.130, 0.400)),
 )

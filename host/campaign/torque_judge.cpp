@@ -27,6 +27,14 @@ float FloatAt(const CanFrame& frame) {
   return std::bit_cast<float>(bits);
 }
 
+/// Nobody can answer for a drive that produces what it does not mean to.
+bool LiesOfTorque(const std::vector<FaultConfig>& faults, int arm_id, int joint_number) {
+  return std::any_of(faults.begin(), faults.end(), [&](const FaultConfig& fault) {
+    return fault.signal == FaultSignal::kCurrent && fault.arm == arm_id &&
+           (fault.joint == 0 || fault.joint == joint_number);
+  });
+}
+
 /// Frames that are late on the wire keep a drive's watchdog fed for so much longer.
 double LatestFrame_s(const std::vector<FaultConfig>& faults, int arm_id) {
   double late_s = 0.0;
@@ -42,7 +50,9 @@ TorqueJudge::TorqueJudge(const ScenarioConfig& trial, Violations* violations) : 
   for (const ArmEntry& entry : trial.fleet.arms) {
     Arm arm{entry.id, {}};
     for (const JointDriveConfig& drive : entry.joints) {
+      const int number = static_cast<int>(arm.joints.size()) + 1;
       arm.joints.push_back({.config = drive,
+                            .judged = !LiesOfTorque(trial.faults, entry.id, number),
                             .silence_max_s = drive.watchdog_s + trial.drive.latency_s + kGrid_s +
                                              LatestFrame_s(trial.faults, entry.id)});
     }
@@ -74,7 +84,7 @@ void TorqueJudge::OnMoment(size_t arm, double t_s, const EmulatedArm& bench) {
     Joint& joint = arms_[arm].joints[i];
     const double silence_s = t_s - joint.last_frame_s;
     const double power_W = torque_Nm[i] * bench.plant().dq_rad_s[i];
-    const bool drives = silence_s > joint.silence_max_s && power_W > kNoPower_W;
+    const bool drives = joint.judged && silence_s > joint.silence_max_s && power_W > kNoPower_W;
     if (drives && !joint.complained) {
       violations_->push_back({Invariant::kDriveStops, t_s, arms_[arm].id,
                               "joint " + std::to_string(i + 1) + " is driven with " +

@@ -21,6 +21,7 @@ class TorqueJudge {
  private:
   struct Joint {
     JointDriveConfig config;
+    bool judged;  ///< whether what its drive produces is what it means to
     double last_frame_s = -1e9;
     double silence_max_s;  ///< from a frame to the end of the drive's torque
     bool complained = false;

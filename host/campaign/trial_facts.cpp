@@ -11,11 +11,12 @@ bool Harms(const FaultConfig& fault) {
   return fault.kind != kReplay && fault.kind != kReorder && fault.kind != kForge && fault.kind != kJunk;
 }
 
+/// What nobody can believe is as good as silence.
 bool Silences(const FaultConfig& fault) {
   using enum FaultKind;
   return fault.kind == kControllerDies || fault.kind == kControllerStops ||
          fault.kind == kControllerRestarts || fault.kind == kLeaderDies || fault.kind == kLeaderStops ||
-         fault.kind == kPartition;
+         fault.kind == kLeaderNonfinite || fault.kind == kPartition;
 }
 
 }  // namespace

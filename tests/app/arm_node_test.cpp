@@ -258,9 +258,9 @@ TEST_F(Board, DropsAStateThatCannotFollowTheLastOne) {
   SendLeader(4);
   SendLeader(5, 0.9 * allowed_m);
   EXPECT_EQ(node_.rejected_messages().total(), 1);
-  for (int64_t k = 6; k <= 25; ++k) SendLeader(k, 1.0);
+  for (int64_t k = 6; k <= 25; ++k) SendLeader(k, 2.0);
   EXPECT_EQ(node_.rejected_messages().implausible, 21);
-  SendLeader(26, 1.0);
+  SendLeader(26, 2.0);
   EXPECT_EQ(node_.rejected_messages().total(), 21) << "after estimator.age_max_s it counts as started anew";
 }
 

@@ -42,6 +42,28 @@ TEST(ArmController, BothLawsRunOnArmsOfTwoToSevenJoints) {
   }
 }
 
+// The law does not run yet, and what it would want of spare joints is nothing.
+TEST(ArmController, LooksAtAnArmWhoseDrivesAreOff) {
+  RandomArms random(3);
+  for (const LawKind law : {LawKind::kPaper, LawKind::kRobust}) {
+    for (int dof = 1; dof <= kMaxDof; ++dof) {
+      const ArmControllerConfig config = Config(dof, law, random);
+      ArmController controller(config, {PaperLeader(0.0), PlanarArm(config.arm).Theta()},
+                               StartMode::kMonitor);
+      ArmInput in = Loop(config).Sample();
+      in.drives_enabled = false;
+      in.q_rad = random.Numbers(dof, 1.0);
+      in.dq_rad_s = JointVector::Zero(dof);
+      for (int k = 0; k < 3; ++k) {
+        in.tick_s = in.sample_s = 0.01 * k;
+        EXPECT_EQ(controller.Step(in), JointVector(JointVector::Zero(dof)));
+        EXPECT_TRUE(std::isfinite(controller.status().subtask_error_rad_s));
+      }
+      EXPECT_EQ(controller.status().state, ControllerState::kMonitor);
+    }
+  }
+}
+
 TEST(ArmController, NeverSendsMoreThanTheTorqueLimit) {
   RandomArms random(2);
   for (const LawKind law : {LawKind::kPaper, LawKind::kRobust}) {

@@ -17,8 +17,8 @@ TEST(SilenceWatch, ASenderWithoutLossesIsMissedAfterAFewMessages) {
     watch.OnMessage(k, k * kPeriodNs, k * kPeriodNs);
     ASSERT_FALSE(watch.IsSilent((k + 1) * kPeriodNs));
   }
-  EXPECT_FALSE(watch.IsSilent(108 * kPeriodNs));
-  EXPECT_TRUE(watch.IsSilent(109 * kPeriodNs));
+  EXPECT_FALSE(watch.IsSilent(107 * kPeriodNs));
+  EXPECT_TRUE(watch.IsSilent(108 * kPeriodNs));
 }
 
 TEST(SilenceWatch, ASenderThatNeverSpeaksOrSpeaksOnceIsMissedAfterASecond) {
@@ -34,8 +34,8 @@ TEST(SilenceWatch, ASenderThatNeverSpeaksOrSpeaksOnceIsMissedAfterASecond) {
 TEST(SilenceWatch, ASlowSenderHasItsOwnTime) {
   SilenceWatch watch{SilenceWatch::Config(), 0};
   for (int64_t k = 1; k <= 10; ++k) watch.OnMessage(k, 10 * k * kPeriodNs, 10 * k * kPeriodNs);
-  EXPECT_FALSE(watch.IsSilent(175 * kPeriodNs));
-  EXPECT_TRUE(watch.IsSilent(185 * kPeriodNs));
+  EXPECT_FALSE(watch.IsSilent(165 * kPeriodNs));
+  EXPECT_TRUE(watch.IsSilent(175 * kPeriodNs));
 }
 
 TEST(SilenceWatch, LossesAreNotTakenForDeathAndDeathIsNoticedAllTheSame) {
