@@ -38,9 +38,10 @@ void Judge::OnEstimate(size_t arm, double t_s, std::span<const uint8_t> payload)
   NoteMeetings(t_s);
   estimate_t message;
   if (message.decode(payload.data(), 0, static_cast<int>(payload.size())) < 0) return;
-  told_[arm] = message.state;
-  consent_.OnState(arm, t_s, message.state);
-  following_.OnState(arm, t_s, message.state);
+  const int state = static_cast<uint8_t>(message.state);
+  told_[arm] = state;
+  consent_.OnState(arm, t_s, state);
+  following_.OnState(arm, t_s, state);
 }
 
 void Judge::OnMoment(size_t arm, double t_s, const EmulatedArm& bench, double error_m) {
