@@ -136,8 +136,8 @@ bool Neighbourhood::Take(Source& source, const Message& message, int64_t arrival
 
 // Whether a state can follow the sender's last one. A leader within (A2), and (1.9) while it is in contact,
 // leave a prediction by no more than beta over the time; after a time without news (1.9) makes up for that
-// time, too. Once the last state is so old that the sender has been given up, or of a former life, any is taken:
-// what goes on being impossible is a leader lost, not one that has moved.
+// time, too. Once the last state is so old that the sender has been given up, or of a former life, any is
+// taken: what goes on being impossible is a leader lost, not one that has moved.
 bool Neighbourhood::IsPlausible(const Source& source, const Zeta& zeta, int64_t stamp_ns) const {
   if (estimator_.kind != EstimatorKind::kPredictive || !source.neighbour.heard) return true;
   const double since_s = Seconds(stamp_ns - source.stamp_ns);
