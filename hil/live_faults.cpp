@@ -71,8 +71,8 @@ bool SendLiveFault(const std::string& table, const std::string& directory, const
   const std::string path = PathOf(directory, name);
   const UniqueFd pipe(open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
   const std::string line = table + "\n";
-  const bool sent = pipe.valid() && write(pipe.get(), line.data(), line.size()) ==
-                                        static_cast<ssize_t>(line.size());
+  const bool sent =
+      pipe.valid() && write(pipe.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size());
   if (sent) return true;
   *error = errno == ENOENT || errno == ENXIO ? "no run goes on in " + directory : Complaint(path);
   return false;

@@ -9,8 +9,9 @@
 
 namespace armada {
 
-/// Where a run in real time takes faults while it goes on: a named pipe in the run's folder, a line a fault, as
-/// an inline table of a scenario, with times from now on. What is none is skipped: `armada fault` checks first.
+/// Where a run in real time takes faults while it goes on: a named pipe in the run's folder, a line a fault,
+/// as an inline table of a scenario, with times from now on. What is none is skipped: `armada fault` checks
+/// first.
 class LiveFaults {
  public:
   /// Faults of drives and buses, which armada-hil makes; and of processes, which `armada run` makes.
@@ -36,8 +37,8 @@ class LiveFaults {
   std::string text_;  ///< that has come, from the start of a line
 };
 
-/// Hands a fault to the run in `directory`, as an inline table with times from now on. False with `*error` set
-/// when there is no run.
+/// Hands a fault to the run in `directory`, as an inline table with times from now on. False with `*error`
+/// set when there is no run.
 bool SendLiveFault(const std::string& table, const std::string& directory, const char* name,
                    std::string* error);
 
