@@ -37,8 +37,7 @@ struct HilArmResult {
 /// frames that come in, each taken at its time of reception, and with the milliseconds of the fleet's clock,
 /// in each of which its error is sampled. A server that wakes late therefore computes the motion it would
 /// have computed in time, sample for sample; only its answers are late, and pacing() tells by how much.
-/// Allocates in the constructor only, and
-/// for a fault that comes while it runs.
+/// Allocates in the constructor only, and for a fault that comes while it runs.
 class HilServer {
  public:
   /// Switches the benches on, now. `buses`, one an arm in the fleet's order, and `logs`, as many or none,

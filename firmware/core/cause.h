@@ -62,9 +62,8 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kErrorPassiveLong, ControllerState::kHold, false, "bus error-passive for long",
      "the same for `control.supervisor.error_passive_max_s`"},
     {Cause::kTicksMissed, ControllerState::kHold, false, "ticks missed",
-     "`control.supervisor.missed_in_a_row` ticks were missed, or `control.supervisor.missed_in_a_second` "
-     "within "
-     "a second"},
+     "`control.supervisor.missed_in_a_row` ticks were missed one after the other, or "
+     "`control.supervisor.missed_in_a_second` within a second"},
     {Cause::kLeaderLost, ControllerState::kHold, false, "leader lost",
      "nobody is heard who knows of the leader, or the news of it are older than `estimator.age_max_s`"},
     {Cause::kSingular, ControllerState::kHold, false, "near a singularity",
@@ -77,8 +76,7 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
      "an arm that knows the leader has not come to follow it in `control.supervisor.follow_max_s`"},
     {Cause::kFleetStop, ControllerState::kHold, false, "a neighbour has stopped",
      "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, or somebody that it heard has fallen "
-     "silent, "
-     "with `control.supervisor.fleet_stop = \"hold\"`"},
+     "silent, with `control.supervisor.fleet_stop = \"hold\"`"},
     {Cause::kOperatorHold, ControllerState::kHold, false, "operator: hold", "`armada ctl hold`"},
     {Cause::kTorquesUnsent, ControllerState::kSafeStop, false, "torques not sent",
      "the same as torques late in `timing.transmit_failures_max` ticks in a row"},
