@@ -26,6 +26,7 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
       period_ns_(Nanoseconds(timing.period_s)),
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
       transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
+      listens_(timing.listens),
       epoch_ns_(epoch_ns) {}
 
 bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
@@ -68,12 +69,9 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   ConfirmSent(MonotonicNow() + period_ns_);
 }
 
-// Several times a period: a storm has only a part of it to fill the kernel's queue, and leaves only a part of
-// its messages to be taken between sample and torque.
 void ArmLoop::ListenUntil(int64_t time_ns) {
-  constexpr int kParts = 4;
-  for (int part = kParts - 1; part > 0; --part) {
-    SleepUntil(time_ns - part * period_ns_ / kParts);
+  for (int part = listens_ - 1; part > 0; --part) {
+    SleepUntil(time_ns - part * period_ns_ / listens_);
     TakeWaitingMessages();
   }
   SleepUntil(time_ns);

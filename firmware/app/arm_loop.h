@@ -63,6 +63,7 @@ class ArmLoop {
   int64_t period_ns_;
   int64_t feedback_timeout_ns_;
   int64_t transmit_timeout_ns_;
+  int listens_;
   int64_t epoch_ns_;
   FrameList out_;
   MessageBuffer buffer_{};

@@ -123,9 +123,9 @@ bool Neighbourhood::Take(Source& source, const Message& message, int64_t arrival
     return false;
   }
   // A sender that starts anew counts from 1 again, and misses nothing by that.
-  if (source.accepted > 0) source.missed += std::max<int64_t>(0, message.sequence - source.sequence - 1);
+  if (source.accepted > 0)
+    source.missed += std::max<int64_t>(0, message.sequence - source.silence.sequence() - 1);
   ++source.accepted;
-  source.sequence = message.sequence;
   source.stamp_ns = message.stamp_ns;
   source.neighbour.zeta = zeta;
   source.neighbour.jerk_m_s3 = ToTask(message.jerk_m_s3);

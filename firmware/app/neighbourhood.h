@@ -60,7 +60,6 @@ class Neighbourhood {
     std::optional<SealCheck> seal;
     ClockOffset clock;
     SilenceWatch silence;
-    int64_t sequence = 0;
     int64_t stamp_ns = 0;
     int64_t accepted = 0;
     int64_t missed = 0;

@@ -21,6 +21,7 @@ struct TimingConfig {
   double feedback_stale_s = 0.025;
   double transmit_timeout_s = 0.002;
   int transmit_failures_max = 2;
+  int listens = 4;
 
   template <class Visitor>
   void Visit(Visitor& parameter) {
@@ -42,6 +43,10 @@ struct TimingConfig {
     parameter({"transmit_failures_max", "ticks", 1, 100,
                "ticks in a row whose torques did not get out at which the arm is disabled"},
               transmit_failures_max);
+    parameter({"listens", "", 1, 100,
+               "times a period that a board takes the messages that wait: the more, the less of the kernel's "
+               "queue a storm can fill, and the less of it is left between sample and torque"},
+              listens);
   }
 };
 

@@ -75,7 +75,7 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kNotFollowing, ControllerState::kHold, false, "does not come to follow",
      "an arm that knows the leader has not come to follow it in `control.supervisor.follow_max_s`"},
     {Cause::kFleetStop, ControllerState::kHold, false, "a neighbour has stopped",
-     "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, or somebody that it heard has fallen "
+     "an arm that this one hears is in HOLD, SAFE_STOP or FAULT, or somebody that it should hear is "
      "silent, with `control.supervisor.fleet_stop = \"hold\"`"},
     {Cause::kOperatorHold, ControllerState::kHold, false, "operator: hold", "`armada ctl hold`"},
     {Cause::kTorquesUnsent, ControllerState::kSafeStop, false, "torques not sent",

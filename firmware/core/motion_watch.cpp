@@ -6,8 +6,11 @@ CauseSet MotionWatch::Update(const MotionSeen& seen, double elapsed_s) {
   const bool near = seen.follows && seen.synced && seen.error_m < config_.following_error_m;
   near_s_ = near ? near_s_ + elapsed_s : 0.0;
   following_ = seen.follows && (following_ || near_s_ > config_.following_s);
-  const bool tries = seen.follows && seen.synced && !following_;
-  away_s_ = tries ? away_s_ + elapsed_s : seen.follows ? away_s_ : 0.0;
+  if (!seen.follows) {
+    away_s_ = 0.0;
+  } else if (seen.synced && !following_) {
+    away_s_ += elapsed_s;
+  }
   const bool singular = following_ && seen.sigma_min < config_.sigma_min;
   singular_s_ = singular ? singular_s_ + elapsed_s : 0.0;
   // A subtask may take all the torque that there is, as long as the task does not suffer.

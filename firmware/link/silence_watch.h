@@ -49,6 +49,9 @@ class SilenceWatch {
     return silent_s > (period_s_ > 0.0 ? allowed_ * period_s_ : config_.first_s);
   }
 
+  /// Of the last message; 0 before the first.
+  int64_t sequence() const { return sequence_; }
+
  private:
   Config config_;
   bool heard_ = false;

@@ -104,16 +104,18 @@ ProcessGroup::Duration ProcessFaults::TimeLeft(ProcessGroup::Duration longest) c
 bool ProcessFaults::MakeDue(ProcessGroup* group,
                             const std::function<bool(int arm_id, std::string* error)>& start,
                             std::string* error) {
-  while (TimeLeft(ProcessGroup::Duration(1)) == ProcessGroup::Duration::zero()) {
+  const auto is_due = [&] { return TimeLeft(ProcessGroup::Duration(1)) == ProcessGroup::Duration::zero(); };
+  if (!is_due()) return true;
+  const Foremost foremost;  // until the last: of two close together the second has no lead of its own
+  do {
     const Step step = steps_[next_++];
-    const Foremost foremost;
     SleepThrough(step.at_ns);
     const double made_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
     if (!Make(step, group, start, error)) return false;
     const bool link = step.deed == Deed::kLinkDown || step.deed == Deed::kLinkUp;
     made_.push_back({NameOf(step.deed), link ? interfaces_.at(step.arm_id) : ProcessOf(step.arm_id),
                      1e-9 * static_cast<double>(step.at_ns - epoch_ns_), made_s});
-  }
+  } while (is_due());
   return true;
 }
 
