@@ -29,9 +29,8 @@ class ArmLoop {
  public:
   ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns);
 
-  /// Emulation only: brings the drives up until the epoch; false when one of them is not in torque mode by
-  /// then, or on
-  /// `*stop`.
+  /// Emulation only: brings the drives up until the epoch. False when one of them is not in torque mode by
+  /// then, or on `*stop`.
   bool BringUp(const volatile std::sig_atomic_t* stop);
   /// Runs ticks until `end_ns` or `*stop`, then disables the drives.
   void Run(int64_t end_ns, const volatile std::sig_atomic_t* stop);

@@ -48,8 +48,7 @@ class ProcessFaults {
   ProcessGroup::Duration TimeLeft(ProcessGroup::Duration longest) const;
 
   /// Makes those that come within the next moment, each at its time. `start` starts a controller anew. False
-  /// with
-  /// `*error` set.
+  /// with `*error` set.
   bool MakeDue(ProcessGroup* group, const std::function<bool(int arm_id, std::string* error)>& start,
                std::string* error);
 
