@@ -150,7 +150,7 @@ given '' 0 0
 : >vm_calls
 when campaign --phases 20 --seed 3
 check 'a campaign gets the kernels, then runs with its options' test "$(cat vm_calls)" = "$(printf '%s\n' \
-  "image into $box/kernels" "campaign build/release/bin out/campaign --phases 20 --seed 3 $box/kernels")"
+  "image into $box/kernels" "campaign build/release/bin out/processes --phases 20 --seed 3 $box/kernels")"
 check 'and prints the figures' says 'figures'
 given '' 0 1
 when campaign
