@@ -230,13 +230,13 @@ constexpr const char* TextOf(Trigger trigger) {
     case Trigger::kStartedRunning:
       return "emulation only";
     case Trigger::kArm:
-      return "operator: arm";
+      return "operator's arm";
     case Trigger::kStart:
-      return "operator: start";
+      return "operator's start";
     case Trigger::kReset:
       break;
   }
-  return "operator: reset";
+  return "operator's reset";
 }
 
 struct Transition {

@@ -14,8 +14,23 @@ std::string NameOf(const Json& object, const std::string& key) {
   return key.empty() ? "run" : key;
 }
 
+/// Of a list of objects one: the sums of their numbers, without what tells them apart.
+Json SumOf(const Json& list) {
+  Json sum = Json::object();
+  for (const Json& part : list) {
+    for (const auto& [key, number] : part.items()) {
+      if (key == "from" || !number.is_number_integer()) continue;
+      sum[key] = sum.value(key, int64_t{0}) + number.get<int64_t>();
+    }
+  }
+  return sum;
+}
+
 void AddValues(const Json& value, const std::string& quantity, const std::string& process,
                ProcessTable* table) {
+  if (value.is_array() && !value.empty() && value.front().is_object()) {
+    return AddValues(SumOf(value), quantity, process, table);
+  }
   if (value.is_object()) {
     const std::string prefix = quantity + ".";
     for (const auto& [key, part] : value.items()) AddValues(part, prefix + key, process, table);

@@ -17,7 +17,8 @@ struct ProcessTable {
 };
 
 /// Collects every object of metrics.json that has `timing`, `memory` or `bus`. A process is called by its
-/// "name", else "arm <id>", else by the key it stands under.
+/// "name", else "arm <id>", else by the key it stands under. Of a list, as `bus.lcm_heard[]` of all senders,
+/// it has the sums.
 ProcessTable CollectProcesses(const Json& metrics);
 
 }  // namespace armada

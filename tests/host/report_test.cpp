@@ -13,6 +13,7 @@
 #include "host/report/axis_range.h"
 #include "host/report/csv_table.h"
 #include "host/report/number_text.h"
+#include "host/report/process_table.h"
 #include "host/report/run_facts.h"
 #include "tests/host/report_golden/sample_run.h"
 #include "tests/support/temp_dir.h"
@@ -348,6 +349,16 @@ TEST_F(ReportRefuses, AFigureThatGnuplotFailsOnAndKeepsNoHalfOfIt) {
   EXPECT_NE(error.find("line 7: no such terminal"), std::string::npos) << error;
   EXPECT_FALSE(fs::exists(dir() / "report" / "estimates.svg"));
   EXPECT_TRUE(fs::exists(dir() / "report" / "estimates.gp"));
+}
+
+TEST(ProcessTable, HasTheSumsOfAListSoThatItStaysNarrow) {
+  const Json arm = Json::parse(R"({"id": 2, "bus": {"lcm_sent": 4000, "lcm_heard": [
+      {"from": 1, "accepted": 2000, "missed": 0}, {"from": 3, "accepted": 1990, "missed": 10}]}})");
+  const ProcessTable table = CollectProcesses({{"arms", {arm}}});
+  EXPECT_EQ(table.quantities,
+            (std::vector<std::string>{"bus.lcm_sent", "bus.lcm_heard.accepted", "bus.lcm_heard.missed"}));
+  EXPECT_EQ(table.values.at({"bus.lcm_heard.accepted", "arm 2"}), 3990);
+  EXPECT_EQ(table.values.at({"bus.lcm_heard.missed", "arm 2"}), 10);
 }
 
 TEST(NumberText, KeepsSignificantDigitsAndNeverPrintsNotANumber) {
