@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include "firmware/app/config/markdown_cell.h"
 #include "firmware/core/supervisor.h"
 
 namespace armada {
@@ -58,7 +59,7 @@ void WriteStatesReference(std::ostream& out) {
   out << "\n## Causes\n\nThe worst active cause wins. An arm without torque has none but an e-stop.\n\n"
          "| cause | active when | reaction |\n|---|---|---|\n";
   for (const CauseRule& rule : kCauseRules) {
-    out << "| " << rule.name << " | " << rule.active << " | " << NameOf(rule.reaction)
+    out << "| " << rule.name << " | " << MarkdownCell(rule.active) << " | " << NameOf(rule.reaction)
         << (rule.halves_gains ? ", half the gains" : "") << " |\n";
   }
   out << "\n## Requests\n\nWhat `armada ctl` may be refused for: ";

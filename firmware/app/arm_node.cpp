@@ -88,8 +88,8 @@ std::span<const uint8_t> ArmNode::EncodeReply(int64_t tick_ns, MessageBuffer* bu
 
 // Requests feed the watchdogs of some drives. One that gets no torques must not be kept from stopping.
 void ArmNode::RequestSamples(int64_t now_ns, FrameList* out) {
-  if (bus_watch_.loses_torques()) return joints_.SkipSamples(now_ns);
-  joints_.RequestSamples(now_ns, state(), out);
+  joints_.ExpectNewSamples(now_ns);
+  if (!bus_watch_.loses_torques()) joints_.RequestSamples(now_ns, state(), out);
 }
 
 void ArmNode::OnMessage(const LcmMessage& message) {

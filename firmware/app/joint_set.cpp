@@ -88,19 +88,17 @@ void JointSet::Reset() {
   good_ticks_ = 0;
 }
 
+void JointSet::ExpectNewSamples(int64_t now_ns) {
+  request_ns_ = now_ns;
+  for (size_t i = 0; i < drives_.size(); ++i) sequence_at_request_[i] = drives_[i]->sample().sequence;
+}
+
 void JointSet::RequestSamples(int64_t now_ns, ControllerState state, FrameList* out) {
-  SkipSamples(now_ns);
   for (size_t i = 0; i < drives_.size(); ++i) {
     const bool others = state <= ControllerState::kMonitor ? prepared_[i] : state != ControllerState::kArming;
     asked_[i] = others || IsInTorqueMode(*drives_[i]);
     if (asked_[i]) drives_[i]->RequestSample(now_ns, out);
   }
-}
-
-// Who was asked in the last tick stays so: its sample grows old.
-void JointSet::SkipSamples(int64_t now_ns) {
-  request_ns_ = now_ns;
-  for (size_t i = 0; i < drives_.size(); ++i) sequence_at_request_[i] = drives_[i]->sample().sequence;
 }
 
 Reception JointSet::OnFrame(const CanFrame& frame) {

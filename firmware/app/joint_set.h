@@ -33,10 +33,11 @@ class JointSet {
   /// Allows a bring-up again.
   void Reset();
 
-  /// Asks for samples; not of drives that are being found or enabled.
+  /// From now on only newer samples count.
+  void ExpectNewSamples(int64_t now_ns);
+  /// Asks for them; not of drives that are being found or enabled. Without it those asked in the last tick
+  /// stay so: their samples grow old.
   void RequestSamples(int64_t now_ns, ControllerState state, FrameList* out);
-  /// A tick in which none are asked for.
-  void SkipSamples(int64_t now_ns);
   Reception OnFrame(const CanFrame& frame);
   bool SamplesComplete() const;
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <typeindex>
 #include <utility>
 #include <vector>
 
+#include "firmware/app/config/markdown_cell.h"
 #include "firmware/app/config/parameter_text.h"
 
 namespace armada {
@@ -23,7 +23,7 @@ class ReferenceWriter {
   template <class T>
   void operator()(const ParameterInfo& info, T& value) {
     rows_ += std::string("| `") + info.key + "` | " + info.unit + " | " + Quoted(DefaultText(info, value)) +
-             " | " + AllowedText(info, value) + " | " + WithoutBars(info.meaning) + " |\n";
+             " | " + AllowedText(info, value) + " | " + MarkdownCell(info.meaning) + " |\n";
   }
   template <class Config>
   void Table(const char* name, Config& config) {
@@ -49,12 +49,6 @@ class ReferenceWriter {
  private:
   static std::string Quoted(const std::string& fallback) {
     return fallback == "required" || fallback == "none" ? fallback : "`" + fallback + "`";
-  }
-  /// A bar would end the cell.
-  static std::string WithoutBars(std::string_view text) {
-    std::string escaped;
-    for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
-    return escaped;
   }
   template <class Config>
   void AddSection(const std::string& heading, const std::string& meaning, const char* name, Config& config) {
