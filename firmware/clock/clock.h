@@ -18,6 +18,10 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
+  /// Whether time stands while programs compute. What the machine does to a program meanwhile, page faults say,
+  /// is not of such a run.
+  virtual bool IsStepped() const { return false; }
+
   /// CLOCK_MONOTONIC, ns: the only time of the control path.
   virtual int64_t Now() const = 0;
 

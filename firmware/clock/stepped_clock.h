@@ -25,6 +25,7 @@ class SteppedClock : public Clock {
   /// Leaves the run.
   ~SteppedClock() override;
 
+  bool IsStepped() const override { return true; }
   int64_t Now() const override;
   int64_t WallNow() const override { return Now() + page_->wall_offset_ns; }
   int64_t WallTimeOf(const timespec& kernel_stamp) const override;

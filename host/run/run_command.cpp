@@ -262,7 +262,7 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     control_ = std::make_unique<SignalControl>(group);
   }
   running_ = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
-  faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, stepped_ != nullptr, epoch_ns_,
+  faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, epoch_ns_,
                   epoch_ns_ + static_cast<int64_t>(scenario_.seconds * 1e9));
   return true;
 }

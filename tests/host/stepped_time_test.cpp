@@ -172,7 +172,7 @@ TEST_F(SteppedTimeTest, AProgramThatStartsAnewJoinsAtThatTime) {
   Start("answerer", {"answer", "50"});
   Await();
   PassUntil(100);
-  EXPECT_EQ(LogOf("answerer"), "10.000 answered 0 10.000\n4.000 answered 1 4.000\n14.000 answered 2 14.000\n");
+  EXPECT_EQ(LogOf("answerer"), "10.000 answered 0 10.000\n5.000 answered 1 5.000\n15.000 answered 2 15.000\n");
 }
 
 TEST_F(SteppedTimeTest, WhoDiesIsNamedWithinASecond) {
