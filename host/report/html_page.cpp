@@ -64,8 +64,9 @@ std::string FleetText(const RecordedRun& run) {
 
 std::string Verdict(const RecordedRun& run) {
   const bool ok = RequireKey(run.metrics, "ok", "the top level").get<bool>();
-  const std::string how = Top(run, "mode") == "run" ? "armada run: real time, one process an arm"
-                                                    : "armada sim: virtual time, one process";
+  const std::string how = Top(run, "mode") != "run"          ? "armada sim: virtual time, one process"
+                          : run.metrics.contains("stepped") ? "armada run: stepped time, one process an arm"
+                                                            : "armada run: real time, one process an arm";
   std::string html = std::string("<div class=\"verdict") + (ok ? "" : " bad") + "\"><h1>" +
                      Top(run, "scenario") + ", seed " + Top(run, "seed") + ": <b>" + (ok ? "ok" : "NOT ok") +
                      "</b></h1><p>" + FleetText(run) + "</p>" + BlameText(run, ok) + "</div>\n<dl>";

@@ -82,6 +82,8 @@ when hil now
 check 'hil takes no arguments' test "$code" = 2
 when campaign --phases many
 check 'the phases of a campaign are a number' test "$code" = 2
+when campaign --phases 3 --guests
+check 'and --guests comes first' test "$code" = 2
 when campaign --seed
 check 'and an option of it has a value' test "$code" = 2
 when help
@@ -124,7 +126,7 @@ check 'without the progress lines' silent_about '[1/2]'
 given '' 0 0
 when demo --seed 7
 check 'the demo runs the paper for 20 s with further options' \
-  says 'armada run hil/scenarios/paper.toml --seconds 20 --out out/demo --seed 7'
+  says 'armada run hil/scenarios/paper.toml --seconds 20 --time stepped --out out/demo --seed 7'
 check 'and reports' says 'armada report out/demo'
 check 'and succeeds' test "$code" = 0
 
@@ -133,9 +135,12 @@ mkdir -p project/hil/vm
 printf '#!/bin/bash\necho "image into $ARMADA_VM_CACHE" >>%q\n' "$box/vm_calls" >project/hil/vm/image
 printf '#!/bin/bash\necho "hil $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' "$box/vm_calls" \
   >project/hil/vm/hil
-printf '#!/bin/bash\necho "campaign $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' \
-  "$box/vm_calls" >project/hil/vm/campaign
-chmod +x project/hil/vm/*
+mkdir -p project/hil/campaign
+for place in in_guests in_stepped_time; do
+  printf '#!/bin/bash\necho "%s $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' $place \
+    "$box/vm_calls" >project/hil/campaign/$place
+done
+chmod +x project/hil/vm/* project/hil/campaign/*
 export ARMADA_VM_CACHE=$box/kernels
 given '' 0 0
 when hil
@@ -149,9 +154,13 @@ check 'a hil that fails is a failure' test "$code" = 1
 given '' 0 0
 : >vm_calls
 when campaign --phases 20 --seed 3
-check 'a campaign gets the kernels, then runs with its options' test "$(cat vm_calls)" = "$(printf '%s\n' \
-  "image into $box/kernels" "campaign build/release/bin out/processes --phases 20 --seed 3 $box/kernels")"
+check 'a campaign runs with its options' test "$(cat vm_calls)" = \
+  "in_stepped_time build/release/bin out/processes_in_stepped_time --phases 20 --seed 3 $box/kernels"
 check 'and prints the figures' says 'figures'
+: >vm_calls
+when campaign --guests --phases 20
+check 'in guests it gets the kernels first' test "$(cat vm_calls)" = "$(printf '%s\n' \
+  "image into $box/kernels" "in_guests build/release/bin out/processes_in_guests --phases 20 $box/kernels")"
 given '' 0 1
 when campaign
 check 'a campaign with a finding is a failure' test "$code" = 1

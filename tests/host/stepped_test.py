@@ -130,8 +130,8 @@ def main():
                     failed += 1
                     print(f"{condition}: exit code {run.returncode}\n{run.stdout}{run.stderr}")
                     continue
-                timing = json.loads((folder / "metrics.json").read_text())["timing"]
-                speeds.append(timing["stepped_s"] / timing["real_s"])
+                stepped = json.loads((folder / "metrics.json").read_text())["stepped"]
+                speeds.append(stepped["stepped_s"] / stepped["timing"]["real_s"])
                 left = left_by(folder)
                 first = first or left
                 differing = sorted(file for file in first.keys() | left.keys() if first.get(file) != left.get(file))
