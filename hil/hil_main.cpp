@@ -143,6 +143,8 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   report.seconds = std::max(0.0, server.time_s());
   report.arms = server.Results();
   report.pacing = server.pacing();
+  report.latest_at_s = server.latest_at_s();
+  report.faults_taken = server.faults_taken();
   return report;
 }
 

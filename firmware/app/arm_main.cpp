@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -110,11 +109,8 @@ int Run(const Options& options) {
   loop->Run(end_ns, &stop_requested);
   LeaveRealtime();
 
-  if (!options.json.empty()) {
-    std::ofstream file(options.json);
-    WriteLoopReport(*loop, *node, *bus, *link, grant, file);
-    if (!file.flush()) return Fail(options, "cannot write " + options.json);
-  }
+  const auto report = [&](std::ostream& file) { WriteLoopReport(*loop, *node, *bus, *link, grant, file); };
+  if (!options.json.empty() && !WriteWhole(options.json, report, &error)) return Fail(options, error);
   const ControllerState state = loop->final_state();
   if (state == ControllerState::kFault || state == ControllerState::kSafeStop) {
     return Fail(options, std::string("ended in ") + NameOf(state) + ": " + NameOf(node->cause()));

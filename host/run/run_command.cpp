@@ -19,11 +19,16 @@
 #include "host/arm_table.h"
 #include "host/private_network.h"
 #include "host/process_group.h"
+#include "host/run/board_lateness.h"
 #include "host/run/board_networks.h"
+#include "host/run/heartbeat.h"
 #include "host/run/process_faults.h"
 #include "host/run/run_buses.h"
+#include "host/run/run_diagnosis.h"
+#include "host/run/run_folder.h"
 #include "host/run/run_in_vm.h"
 #include "host/run/run_recorder.h"
+#include "host/run/run_reservation.h"
 #include "host/run/run_result.h"
 #include "host/run/virtual_can.h"
 
@@ -71,13 +76,18 @@ class Run {
   bool Prepare(std::string* error);
   bool Execute(std::string* error);
   bool Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error);
+  /// Of a run that broke off; empty where it had not begun.
+  std::vector<Finding> DiagnoseEnd(const std::string& why) const;
   bool interrupted() const { return interrupted_; }
+  const std::vector<Finding>& findings() const { return findings_; }
 
  private:
   bool MakeKey(std::string* error);
   bool WriteInputs(std::string* error);
   bool MakeNetworks(std::string* error);
   bool MakeBoardNetworks(std::string* error);
+  bool EnterOwnNetwork(const std::string& why, const std::vector<std::string>& interfaces,
+                       std::string* error);
   bool StartAll(ProcessGroup* group, std::string* error);
   bool StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error);
   std::map<int, std::string> BoardInterfaces() const;
@@ -96,6 +106,7 @@ class Run {
   const RunOptions& options_;
   ScenarioConfig scenario_;
   fs::path out_;
+  RunReservation reservation_;
   VirtualCan virtual_can_;  // before what uses it: removed last
   FleetKey key_{};
   int64_t epoch_ns_ = 0;
@@ -103,6 +114,9 @@ class Run {
   std::unique_ptr<RunRecorder> recorder_;
   std::optional<ProcessFaults> faults_;
   std::unique_ptr<LiveFaults> live_faults_;
+  std::optional<Heartbeat> heartbeat_;
+  double ended_s_ = 0.0;  ///< time of the run
+  std::vector<Finding> findings_;
   size_t running_ = 0;  ///< programs whose end is awaited
   bool interrupted_ = false;
 };
@@ -159,25 +173,40 @@ bool Run::MakeBoardNetworks(std::string* error) {
   return true;
 }
 
+// Interfaces that are there would be out of reach in a network of our own, and so would other boards.
+bool Run::EnterOwnNetwork(const std::string& why, const std::vector<std::string>& interfaces,
+                          std::string* error) {
+  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  const bool bound = std::any_of(interfaces.begin(), interfaces.end(), VirtualCan::Exists);
+  if (bound) {
+    *error = why + ", and the CAN interfaces are of this network";
+  } else if (url->ttl > 0) {
+    *error =
+        why + ", and link.lcm_url has ttl=" + std::to_string(url->ttl) + ": other boards could not be heard";
+  } else if (EnterPrivateNetwork(error)) {
+    std::cout << why << ": running in a private network namespace\n";
+    return true;
+  } else {
+    *error = why + ", and " + *error;
+  }
+  return false;
+}
+
 bool Run::MakeNetworks(std::string* error) {
   if (options_.namespaces) return MakeBoardNetworks(error);
   const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
   if (!url) return false;
   const std::vector<std::string> interfaces = SocketCanInterfaces(scenario_.fleet, options_.hil_buses);
-  if (!HasMulticastRoute()) {
-    // Interfaces that are there would be out of reach in a network of our own, and so would other boards.
-    const bool bound = std::any_of(interfaces.begin(), interfaces.end(), VirtualCan::Exists);
-    if (url->ttl > 0 || bound) {
-      *error =
-          "no multicast route here, and " +
-          (bound ? "the CAN interfaces are of this network"
-                 : "link.lcm_url has ttl=" + std::to_string(url->ttl) + ": other boards could not be heard") +
-          "; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev " +
-          (url->ttl > 0 ? "<interface>" : "lo");
+  const std::vector<std::string> wanted = NamesToReserve(scenario_.fleet, options_.hil_buses);
+  if (std::string taken; !HasMulticastRoute()) {
+    if (!EnterOwnNetwork("no multicast route here", interfaces, error)) {
+      error->append("; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev ");
+      error->append(url->ttl > 0 ? "<interface>" : "lo");
       return false;
     }
-    if (!EnterPrivateNetwork(error)) return false;
-    std::cout << "no multicast route here: running in a private network namespace\n";
+  } else if (!reservation_.Take(wanted, &taken) && !EnterOwnNetwork(taken, interfaces, error)) {
+    error->append("; wait for its end, or give this run other buses and another link.lcm_url");
+    return false;
   }
   if (!virtual_can_.Provide(interfaces, error)) return false;
   if (!interfaces.empty()) PrintCanInterfaces(interfaces, virtual_can_.made(), std::cout);
@@ -342,7 +371,10 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
 
 bool Run::Execute(std::string* error) {
   ProcessGroup group;
+  heartbeat_.emplace(static_cast<int64_t>(TolerableLateness_s(scenario_.fleet.timing) * 1e9));
   const bool done = StartAll(&group, error) && Watch(&group, error);
+  heartbeat_->Stop();
+  ended_s_ = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
   if (faults_) faults_->KillStopped(&group);
   group.StopAll(milliseconds(2000));
   return done;
@@ -356,8 +388,23 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
   if (!recorder_->WriteTraces(out_.string(), error)) return false;
   if (!CollectRunResult(scenario_, options_.seed, *recorder_, *faults_, out_.string(), metrics, json, error))
     return false;
+  RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
+                                        heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
+  evidence.metrics = metrics;
+  findings_ = Diagnose(evidence);
+  (*json)["diagnosis"] = ToJson(findings_);
   if (!WriteJson(*json, In("metrics.json"), error)) return false;
   return options_.json.empty() || WriteJson(*json, options_.json, error);
+}
+
+std::vector<Finding> Run::DiagnoseEnd(const std::string& why) const {
+  if (recorder_ == nullptr || interrupted_) return {};
+  RunEvidence evidence =
+      GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, faults_ ? &*faults_ : nullptr,
+                     heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
+  evidence.broke_off = why;
+  evidence.broke_off_s = ended_s_;
+  return Diagnose(evidence);
 }
 
 }  // namespace
@@ -378,7 +425,14 @@ int RunRunCommand(const RunOptions& options) {
     return kExitUsage;
   }
   std::string error;
+  bool in_use = false;
+  const auto folder = RunFolder::Take(options.out, &in_use, &error);
+  if (folder == nullptr) {
+    const int code = Fail(error);
+    return in_use ? kExitUsage : code;
+  }
   if (options.bus == "vm") {
+    folder->KeepAcrossExec();
     return PrepareFolder(options.out, &error) ? RunInVm(options, *scenario) : Fail(error);
   }
   std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
@@ -388,10 +442,12 @@ int RunRunCommand(const RunOptions& options) {
   nlohmann::ordered_json json;
   if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {
     const int code = Fail(error);
+    PrintFindings(run.DiagnoseEnd(error), false, std::cerr);
     return run.interrupted() ? kExitInterrupted : code;
   }
   PrintArmTable(metrics, std::cout);
   PrintProcessTable(json, std::cout);
+  PrintFindings(run.findings(), metrics.ok, std::cout);
   return metrics.ok ? kExitOk : kExitFailed;
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "host/run/finding.h"
+#include "host/run/run_evidence.h"
+
+namespace armada {
+
+/// What an arm misses of the criterion.
+struct ArmFailure {
+  Finding finding;       ///< what, when, and what was late or lost on its board at that moment
+  bool in_time = false;  ///< nothing was late or lost there up to then
+};
+
+/// None of an arm that misses nothing. Of a run that broke off: whether it has stopped or was never heard.
+std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index);
+
+/// What the arm's board lost in the whole run; none when it lost nothing, or has left no report.
+std::optional<Finding> LossesOf(const RunEvidence& evidence, size_t index);
+
+}  // namespace armada
