@@ -158,7 +158,7 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
   return ArmFailure{{words.kind(), id, moment_s, text}, in_time};
 }
 
-std::optional<Finding> LossesOf(const RunEvidence& evidence, size_t index) {
+std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
   const Json& board = evidence.arms[index].board;
   if (!board.is_object()) return std::nullopt;
   std::string text;
@@ -183,7 +183,7 @@ std::optional<Finding> LossesOf(const RunEvidence& evidence, size_t index) {
   }
   if (text.empty()) return std::nullopt;
   const int id = evidence.scenario->fleet.arms[index].id;
-  return Finding{"losses", id, std::nullopt, "arm " + std::to_string(id) + " in the whole run: " + text};
+  return RunFinding{"losses", id, std::nullopt, "arm " + std::to_string(id) + " in the whole run: " + text};
 }
 
 }  // namespace armada

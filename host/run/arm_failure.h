@@ -3,14 +3,14 @@
 #include <cstddef>
 #include <optional>
 
-#include "host/run/finding.h"
 #include "host/run/run_evidence.h"
+#include "host/run/run_finding.h"
 
 namespace armada {
 
 /// What an arm misses of the criterion.
 struct ArmFailure {
-  Finding finding;       ///< what, when, and what was late or lost on its board at that moment
+  RunFinding finding;    ///< what, when, and what was late or lost on its board at that moment
   bool in_time = false;  ///< nothing was late or lost there up to then
 };
 
@@ -18,6 +18,6 @@ struct ArmFailure {
 std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index);
 
 /// What the arm's board lost in the whole run; none when it lost nothing, or has left no report.
-std::optional<Finding> LossesOf(const RunEvidence& evidence, size_t index);
+std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index);
 
 }  // namespace armada

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "host/run/finding.h"
+#include "host/run/run_finding.h"
 
 namespace armada {
 namespace {

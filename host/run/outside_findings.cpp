@@ -45,7 +45,7 @@ std::string StallText(const RunEvidence& evidence, const Stall& stall) {
   return text;
 }
 
-Finding FaultFinding(int arm_id, double at_s, const std::string& what) {
+RunFinding FaultFinding(int arm_id, double at_s, const std::string& what) {
   return {"fault", arm_id, at_s, what + " at " + TimeText(at_s) + ", as was ordered"};
 }
 
@@ -55,8 +55,8 @@ std::string OfArm(int arm_id) {
 
 }  // namespace
 
-std::vector<Finding> FaultFindings(const RunEvidence& evidence, double until_s) {
-  std::vector<Finding> findings;
+std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_s) {
+  std::vector<RunFinding> findings;
   for (const FaultConfig& fault : evidence.scenario->faults) {
     const FaultMaker maker = MeaningOf(fault.kind).maker;
     if (maker != FaultMaker::kEmulation && fault.kind != FaultKind::kCpuHog) continue;
@@ -72,19 +72,19 @@ std::vector<Finding> FaultFindings(const RunEvidence& evidence, double until_s) 
   }
   for (const ProcessFaults::Made& made : evidence.faults_made)
     findings.push_back(FaultFinding(0, made.made_s, made.to + ": " + made.what));
-  std::erase_if(findings, [&](const Finding& finding) { return *finding.at_s > until_s; });
+  std::erase_if(findings, [&](const RunFinding& finding) { return *finding.at_s > until_s; });
   std::stable_sort(findings.begin(), findings.end(),
-                   [](const Finding& a, const Finding& b) { return *a.at_s < *b.at_s; });
+                   [](const RunFinding& a, const RunFinding& b) { return *a.at_s < *b.at_s; });
   return findings;
 }
 
-std::vector<Finding> StallFindings(const RunEvidence& evidence, size_t most) {
+std::vector<RunFinding> StallFindings(const RunEvidence& evidence, size_t most) {
   std::vector<Stall> stalls = evidence.stalls;
   std::stable_sort(stalls.begin(), stalls.end(),
                    [](const Stall& a, const Stall& b) { return Length_s(a) > Length_s(b); });
   const auto listed = stalls.begin() + static_cast<std::ptrdiff_t>(std::min(most, stalls.size()));
   std::sort(stalls.begin(), listed, [](const Stall& a, const Stall& b) { return a.begin_ns < b.begin_ns; });
-  std::vector<Finding> findings;
+  std::vector<RunFinding> findings;
   for (auto stall = stalls.begin(); stall != listed; ++stall)
     findings.push_back({"stall", 0, evidence.TimeOf(stall->begin_ns), StallText(evidence, *stall)});
   if (listed != stalls.end()) {
@@ -96,8 +96,8 @@ std::vector<Finding> StallFindings(const RunEvidence& evidence, size_t most) {
   return findings;
 }
 
-std::vector<Finding> ProgramFindings(const RunEvidence& evidence) {
-  std::vector<Finding> findings;
+std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
+  std::vector<RunFinding> findings;
   bool has_priority = true;
   const auto look = [&](const RunEvidence::Json& program) {
     if (program.is_object() && !program.at("timing").at("realtime_priority").get<bool>())

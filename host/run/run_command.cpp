@@ -77,9 +77,9 @@ class Run {
   bool Execute(std::string* error);
   bool Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error);
   /// Of a run that broke off; empty where it had not begun.
-  std::vector<Finding> DiagnoseEnd(const std::string& why) const;
+  std::vector<RunFinding> DiagnoseEnd(const std::string& why) const;
   bool interrupted() const { return interrupted_; }
-  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<RunFinding>& findings() const { return findings_; }
 
  private:
   bool MakeKey(std::string* error);
@@ -116,7 +116,7 @@ class Run {
   std::unique_ptr<LiveFaults> live_faults_;
   std::optional<Heartbeat> heartbeat_;
   double ended_s_ = 0.0;  ///< time of the run
-  std::vector<Finding> findings_;
+  std::vector<RunFinding> findings_;
   size_t running_ = 0;  ///< programs whose end is awaited
   bool interrupted_ = false;
 };
@@ -397,7 +397,7 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
   return options_.json.empty() || WriteJson(*json, options_.json, error);
 }
 
-std::vector<Finding> Run::DiagnoseEnd(const std::string& why) const {
+std::vector<RunFinding> Run::DiagnoseEnd(const std::string& why) const {
   if (recorder_ == nullptr || interrupted_) return {};
   RunEvidence evidence =
       GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, faults_ ? &*faults_ : nullptr,

@@ -11,14 +11,15 @@ namespace armada {
 namespace {
 
 constexpr size_t kMostStalls = 3;
+constexpr double kLast_s = std::numeric_limits<double>::infinity();  // what has no time comes last
 
-void Append(std::vector<Finding> more, std::vector<Finding>* findings) {
+void Append(std::vector<RunFinding> more, std::vector<RunFinding>* findings) {
   findings->insert(findings->end(), more.begin(), more.end());
 }
 
 // What is of no arm: the run broke off, or the fleet misses its criterion.
-std::vector<Finding> FleetFailures(const RunEvidence& evidence) {
-  std::vector<Finding> failures;
+std::vector<RunFinding> FleetFailures(const RunEvidence& evidence) {
+  std::vector<RunFinding> failures;
   if (!evidence.broke_off.empty()) {
     const std::string first_line = evidence.broke_off.substr(0, evidence.broke_off.find('\n'));
     failures.push_back({"program", 0, evidence.broke_off_s,
@@ -51,11 +52,11 @@ std::string NothingLate(const RunEvidence& evidence) {
 
 }  // namespace
 
-std::vector<Finding> Diagnose(const RunEvidence& evidence) {
+std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
   if (evidence.metrics != nullptr && evidence.metrics->ok) return StallFindings(evidence, 1);
 
-  std::vector<Finding> failures = FleetFailures(evidence);
-  std::vector<Finding> losses;
+  std::vector<RunFinding> failures = FleetFailures(evidence);
+  std::vector<RunFinding> losses;
   bool boards_in_time = true;
   for (size_t i = 0; i < evidence.arms.size(); ++i) {
     const auto failure = FailureOf(evidence, i);
@@ -64,18 +65,17 @@ std::vector<Finding> Diagnose(const RunEvidence& evidence) {
     if (!failure->in_time) boards_in_time = false;
     if (auto lost = LossesOf(evidence, i)) losses.push_back(std::move(*lost));
   }
-  constexpr double kLast_s = std::numeric_limits<double>::infinity();
-  std::stable_sort(failures.begin(), failures.end(), [](const Finding& a, const Finding& b) {
+  std::stable_sort(failures.begin(), failures.end(), [](const RunFinding& a, const RunFinding& b) {
     return a.at_s.value_or(kLast_s) < b.at_s.value_or(kLast_s);
   });
   double until_s = evidence.scenario->seconds;
   if (!failures.empty()) until_s = std::min(until_s, failures.back().at_s.value_or(until_s));
 
-  std::vector<Finding> findings = FaultFindings(evidence, until_s);
+  std::vector<RunFinding> findings = FaultFindings(evidence, until_s);
   Append(StallFindings(evidence, kMostStalls), &findings);
   const bool from_outside = !findings.empty();
   Append(std::move(failures), &findings);
-  const std::vector<Finding> programs = ProgramFindings(evidence);
+  const std::vector<RunFinding> programs = ProgramFindings(evidence);
   if (!from_outside && boards_in_time && losses.empty() && programs.empty())
     findings.push_back({"none", 0, std::nullopt, NothingLate(evidence)});
   Append(std::move(losses), &findings);

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "host/run/finding.h"
 #include "host/run/run_evidence.h"
+#include "host/run/run_finding.h"
 
 namespace armada {
 
@@ -11,6 +11,6 @@ namespace armada {
 /// machine), then each arm that misses the criterion, in the order of time, with what was late or lost on its
 /// board at that moment, then what was lost in all. There is always a cause; where nothing was late or lost,
 /// that is it. Of a run that is ok it only tells whether the machine stood still.
-std::vector<Finding> Diagnose(const RunEvidence& evidence);
+std::vector<RunFinding> Diagnose(const RunEvidence& evidence);
 
 }  // namespace armada

@@ -1,4 +1,4 @@
-#include "host/run/finding.h"
+#include "host/run/run_finding.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -6,10 +6,10 @@
 
 namespace armada {
 
-nlohmann::ordered_json ToJson(const std::vector<Finding>& findings) {
+nlohmann::ordered_json ToJson(const std::vector<RunFinding>& findings) {
   using Json = nlohmann::ordered_json;
   Json json = Json::array();
-  for (const Finding& finding : findings) {
+  for (const RunFinding& finding : findings) {
     json.push_back({{"kind", finding.kind},
                     {"arm", finding.arm_id == 0 ? Json(nullptr) : Json(finding.arm_id)},
                     {"at_s", finding.at_s ? Json(*finding.at_s) : Json(nullptr)},
@@ -18,7 +18,7 @@ nlohmann::ordered_json ToJson(const std::vector<Finding>& findings) {
   return json;
 }
 
-void PrintFindings(const std::vector<Finding>& findings, bool ok, std::ostream& out) {
+void PrintFindings(const std::vector<RunFinding>& findings, bool ok, std::ostream& out) {
   constexpr size_t kMostLines = 20;
   if (findings.empty()) return;
   out << (ok ? "noticed:\n" : "why it is not ok:\n");

@@ -9,7 +9,7 @@
 namespace armada {
 
 /// One thing that a run has to say of itself: an entry of `diagnosis` in metrics.json.
-struct Finding {
+struct RunFinding {
   std::string kind;  ///< docs/metrics.md lists them
   int arm_id = 0;    ///< 0: of no arm
   std::optional<double> at_s;
@@ -17,10 +17,10 @@ struct Finding {
 };
 
 /// For metrics.json.
-nlohmann::ordered_json ToJson(const std::vector<Finding>& findings);
+nlohmann::ordered_json ToJson(const std::vector<RunFinding>& findings);
 
 /// A heading and a line each; of many the first.
-void PrintFindings(const std::vector<Finding>& findings, bool ok, std::ostream& out);
+void PrintFindings(const std::vector<RunFinding>& findings, bool ok, std::ostream& out);
 
 /// "5.204 s"; "0.300 s before the start".
 std::string TimeText(double t_s);
