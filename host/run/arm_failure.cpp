@@ -9,8 +9,7 @@
 namespace armada {
 namespace {
 
-constexpr double kMoment_s = 1.0;   // so long before it shows, a cause is of that moment
-constexpr double kTelling_s = 0.1;  // a tick that was late tells after it
+constexpr double kTelling_s = 0.1;  // a tick that was late tells of it later
 
 using Json = RunEvidence::Json;
 

@@ -8,6 +8,9 @@
 
 namespace armada {
 
+/// So long before a failure shows, what was late or lost is of that moment.
+inline constexpr double kMoment_s = 1.0;
+
 /// What an arm misses of the criterion.
 struct ArmFailure {
   RunFinding finding;    ///< what, when, and what was late or lost on its board at that moment

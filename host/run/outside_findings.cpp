@@ -78,8 +78,7 @@ std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_
   return findings;
 }
 
-std::vector<RunFinding> StallFindings(const RunEvidence& evidence, size_t most) {
-  std::vector<Stall> stalls = evidence.stalls;
+std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<Stall> stalls, size_t most) {
   std::stable_sort(stalls.begin(), stalls.end(),
                    [](const Stall& a, const Stall& b) { return Length_s(a) > Length_s(b); });
   const auto listed = stalls.begin() + static_cast<std::ptrdiff_t>(std::min(most, stalls.size()));

@@ -53,7 +53,7 @@ std::string NothingLate(const RunEvidence& evidence) {
 }  // namespace
 
 std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
-  if (evidence.metrics != nullptr && evidence.metrics->ok) return StallFindings(evidence, 1);
+  if (evidence.metrics != nullptr && evidence.metrics->ok) return StallFindings(evidence, evidence.stalls, 1);
 
   std::vector<RunFinding> failures = FleetFailures(evidence);
   std::vector<RunFinding> losses;
@@ -68,11 +68,15 @@ std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
   std::stable_sort(failures.begin(), failures.end(), [](const RunFinding& a, const RunFinding& b) {
     return a.at_s.value_or(kLast_s) < b.at_s.value_or(kLast_s);
   });
-  double until_s = evidence.scenario->seconds;
-  if (!failures.empty()) until_s = std::min(until_s, failures.back().at_s.value_or(until_s));
+  const double first_s = failures.empty() ? 0.0 : failures.front().at_s.value_or(0.0);
+  const double last_s = failures.empty() ? kLast_s : failures.back().at_s.value_or(kLast_s);
+  std::vector<Stall> stalls = evidence.stalls;
+  const auto others = std::stable_partition(stalls.begin(), stalls.end(), [&](const Stall& stall) {
+    return evidence.TimeOf(stall.end_ns) > first_s - kMoment_s && evidence.TimeOf(stall.begin_ns) < last_s;
+  });
 
-  std::vector<RunFinding> findings = FaultFindings(evidence, until_s);
-  Append(StallFindings(evidence, kMostStalls), &findings);
+  std::vector<RunFinding> findings = FaultFindings(evidence, last_s);
+  Append(StallFindings(evidence, {stalls.begin(), others}, kMostStalls), &findings);
   const bool from_outside = !findings.empty();
   Append(std::move(failures), &findings);
   const std::vector<RunFinding> programs = ProgramFindings(evidence);
@@ -80,6 +84,7 @@ std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
     findings.push_back({"none", 0, std::nullopt, NothingLate(evidence)});
   Append(std::move(losses), &findings);
   Append(programs, &findings);
+  Append(StallFindings(evidence, {others, stalls.end()}, 1), &findings);
   return findings;
 }
 

@@ -123,11 +123,27 @@ TEST_F(DiagnosisTest, AStallOfOneProcessorAndAHeartbeatWithoutPriorityAreCalledS
 
 TEST_F(DiagnosisTest, OfManyStallsTheLongestAreListed) {
   Stop(3, 900, ControllerState::kHold, Cause::kTicksMissed);
-  for (int i = 0; i < 10; ++i) evidence_.stalls.push_back({At(i), At(i + 0.01 * (i + 1)), 1, 0});
+  for (int i = 0; i < 10; ++i) {
+    const double at_s = 8.2 + 0.05 * i;
+    evidence_.stalls.push_back({At(at_s), At(at_s + 0.001 * (i + 1)), 1, 0});
+  }
   const auto findings = Result();
   ASSERT_EQ(findings.size(), 5u);
-  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(*findings[i].at_s, 7.0 + static_cast<double>(i), 1e-9);
-  EXPECT_EQ(findings[3].text, "7 further stalls of at most 0.070 s");
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(*findings[i].at_s, 8.55 + 0.05 * static_cast<double>(i), 1e-6) << "in the order of time";
+  }
+  EXPECT_EQ(findings[3].text, "7 further stalls of at most 0.007 s");
+  EXPECT_EQ(findings[4].arm_id, 3);
+}
+
+TEST_F(DiagnosisTest, AStallOfLongBeforeIsNoCause) {
+  Stop(3, 900, ControllerState::kHold, Cause::kSingular);
+  evidence_.stalls = {{At(1.0), At(1.02), 1, 0}};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_EQ(findings[0].kind, "stopped");
+  EXPECT_EQ(findings[1].kind, "none");
+  EXPECT_EQ(findings[2].kind, "stall");
 }
 
 TEST_F(DiagnosisTest, AnErrorNamesTheCriterionTheTimeAndWhatWasLateThen) {
