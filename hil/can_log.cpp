@@ -71,6 +71,7 @@ CanLog::CanLog(UniqueFd file, std::string path, std::string_view channel, int64_
 
 void CanLog::Record(int64_t stamp_ns, const CanFrame& frame) {
   const uint64_t at = written_.load(std::memory_order_relaxed);
+  if (in_the_loop_ && at - read_.load(std::memory_order_relaxed) == kCapacity) WriteOut();
   if (at - read_.load(std::memory_order_acquire) == kCapacity) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
     return;

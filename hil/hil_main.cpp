@@ -13,6 +13,7 @@
 
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/heap_counter.h"
+#include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
 #include "firmware/can/open_bus.h"
 #include "hil/active_drive.h"
@@ -38,6 +39,7 @@ struct Options {
   int64_t epoch_ns = 0;  // 0: one second after the benches are switched on
   double seconds = 0.0;  // 0: the scenario's
   std::string out;
+  std::string stepped_clock;
   int priority = 85;  // before the boards: hardware does not wait for its controller
 };
 
@@ -49,11 +51,11 @@ int Fail(const std::string& message) {
   return kExitFailed;
 }
 
-bool OpenBuses(const FleetConfig& fleet, Buses* buses, std::string* error) {
+bool OpenBuses(const FleetConfig& fleet, Clock* clock, Buses* buses, std::string* error) {
   for (const ArmEntry& arm : fleet.arms) {
     BusOptions options = BusOptionsOf(arm);
     options.filters.clear();  // the logs show all that is on the bus
-    buses->push_back(OpenBus(arm.bus, options, error));
+    buses->push_back(OpenBus(arm.bus, options, clock, error));
     if (buses->back() == nullptr) return false;
   }
   return true;
@@ -78,17 +80,16 @@ bool RenameBuses(const std::vector<std::string>& assignments, FleetConfig* fleet
 
 // From the monotonic clock to the wall clock. The two are read one after the other: the closest of some pairs
 // counts.
-int64_t WallOffset() {
+int64_t WallOffset(const Clock& clock) {
   int64_t offset_ns = 0;
   int64_t closest_ns = kStartUpNs;
   for (int i = 0; i < 10; ++i) {
-    const int64_t before_ns = MonotonicNow();
-    timespec wall{};
-    clock_gettime(CLOCK_REALTIME, &wall);
-    const int64_t apart_ns = MonotonicNow() - before_ns;
+    const int64_t before_ns = clock.Now();
+    const int64_t wall_ns = clock.WallNow();
+    const int64_t apart_ns = clock.Now() - before_ns;
     if (apart_ns >= closest_ns) continue;
     closest_ns = apart_ns;
-    offset_ns = int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec - before_ns - apart_ns / 2;
+    offset_ns = wall_ns - before_ns - apart_ns / 2;
   }
   return offset_ns;
 }
@@ -101,8 +102,8 @@ std::string BusDown(const std::string& bus, double t_s) {
   return "bus " + bus + " went down at " + std::to_string(t_s) + " s";
 }
 
-bool CreateLogs(const FleetConfig& fleet, const std::string& directory, int64_t wall_offset_ns, Logs* logs,
-                std::string* error) {
+bool CreateLogs(const FleetConfig& fleet, const std::string& directory, int64_t wall_offset_ns, bool stepped,
+                Logs* logs, std::string* error) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (code) {
@@ -113,6 +114,7 @@ bool CreateLogs(const FleetConfig& fleet, const std::string& directory, int64_t 
     const std::string channel = "can" + std::to_string(arm.id);
     logs->push_back(CanLog::Create(LogPath(directory, arm.id), channel, wall_offset_ns, error));
     if (logs->back() == nullptr) return false;
+    if (stepped) logs->back()->WriteInTheLoop();
   }
   return true;
 }
@@ -122,9 +124,11 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
                 const Logs& logs, LiveFaults* live, PollClock* clock) {
   std::vector<CanLog*> log_pointers;
   for (const auto& log : logs) log_pointers.push_back(log.get());
-  const CanLogWriter writer(log_pointers);  // started before the priority is raised: it keeps the low one
+  const bool stepped = !options.stepped_clock.empty();
+  std::optional<CanLogWriter> writer;
+  if (!stepped) writer.emplace(log_pointers);  // before the priority is raised: it keeps the low one
   HilReport report;
-  report.grant = EnterRealtime(options.priority);
+  if (!stepped) report.grant = EnterRealtime(options.priority);
   if (!report.grant.complaint.empty()) std::cerr << "armada-hil: " << report.grant.complaint << '\n';
   prctl(PR_SET_TIMERSLACK, 1ul);  // without SCHED_FIFO the kernel would add up to 50 us to each wait
 
@@ -135,6 +139,7 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   const uint64_t heap_before = HeapCounter::Allocations();
   const int64_t faults_before = PageFaults();
   report.end = server.Run(options.seconds > 0.0 ? options.seconds : scenario.seconds);
+  if (stepped) std::for_each(logs.begin(), logs.end(), [](const auto& log) { log->WriteOut(); });
   if (HeapCounter::available()) report.heap_allocations = HeapCounter::Allocations() - heap_before;
   report.page_faults = PageFaults() - faults_before;
   report.scenario = scenario.name;
@@ -180,9 +185,18 @@ int Run(const Options& options) {
     std::cerr << "armada-hil: " << error << '\n';
     return kExitUsage;
   }
+  const auto url = ParseLcmUrl(scenario->fleet.link.lcm_url, &error);
+  if (!url) return Fail(error);
+  std::vector<std::string> bus_names;
+  for (const ArmEntry& arm : scenario->fleet.arms) bus_names.push_back(arm.bus);
+  const auto program_clock = OpenProgramClock(options.stepped_clock, *url, bus_names, &error);
+  if (!program_clock) {
+    std::cerr << "armada-hil: " << error << '\n';
+    return kExitBadConfig;
+  }
   Buses buses;
-  if (!OpenBuses(scenario->fleet, &buses, &error)) return Fail(error);
-  const auto clock = PollClock::Create(buses, &error);
+  if (!OpenBuses(scenario->fleet, program_clock.get(), &buses, &error)) return Fail(error);
+  const auto clock = PollClock::Create(buses, program_clock.get(), &error);
   if (clock == nullptr) return Fail(error);
   if (const auto drive = FindActiveDrive(scenario->fleet, buses, kListenNs, clock.get())) {
     return Fail("bus " + scenario->fleet.arms[drive->bus].bus +
@@ -190,8 +204,9 @@ int Run(const Options& options) {
                 std::to_string(drive->node_id) + ")");
   }
   Logs logs;
-  const int64_t wall_offset_ns = WallOffset();
-  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns, &logs, &error))
+  const int64_t wall_offset_ns = WallOffset(*program_clock);
+  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns, !options.stepped_clock.empty(), &logs,
+                                          &error))
     return Fail(error);
 
   const int64_t now_ns = clock->Now();
@@ -238,6 +253,7 @@ int main(int argc, char** argv) {
                  "ARM=BUS: open this in place of the bus that the fleet names; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--out", options.out, "directory for hil.json and can_<id>.log");
+  app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));
   try {

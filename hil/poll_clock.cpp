@@ -2,17 +2,13 @@
 
 #include <sys/signalfd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <ctime>
-
-#include "firmware/app/realtime.h"
 
 namespace armada {
 
-std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<CanBus>>& buses,
+std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<CanBus>>& buses, Clock* clock,
                                              std::string* error) {
   sigset_t stop;
   sigemptyset(&stop);
@@ -24,22 +20,19 @@ std::unique_ptr<PollClock> PollClock::Create(const std::vector<std::unique_ptr<C
     *error = std::string("cannot receive signals: ") + std::strerror(errno);
     return nullptr;
   }
-  std::unique_ptr<PollClock> clock(new PollClock(std::move(signals)));
-  clock->inputs_.push_back({clock->signals_.get(), POLLIN, 0});
-  for (const auto& bus : buses) clock->inputs_.push_back({bus->descriptor(), POLLIN, 0});
-  return clock;
+  std::unique_ptr<PollClock> made(new PollClock(std::move(signals), clock));
+  made->inputs_.push_back({made->signals_.get(), POLLIN, 0});
+  for (const auto& bus : buses) made->inputs_.push_back({bus->descriptor(), POLLIN, 0});
+  return made;
 }
 
 int64_t PollClock::Now() {
-  return MonotonicNow();
+  return clock_->Now();
 }
 
 bool PollClock::WaitUntil(int64_t deadline_ns) {
-  constexpr int64_t kNsPerS = 1'000'000'000;
-  const int64_t left_ns = std::max<int64_t>(0, deadline_ns - Now());
-  const timespec left{left_ns / kNsPerS, left_ns % kNsPerS};
   inputs_.front().revents = 0;
-  ppoll(inputs_.data(), inputs_.size(), &left, nullptr);
+  clock_->Wait(inputs_, deadline_ns);
   return inputs_.front().revents == 0;
 }
 

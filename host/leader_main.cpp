@@ -12,6 +12,7 @@
 
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/link_identity.h"
+#include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
 #include "firmware/link/channels.h"
 #include "firmware/link/lcm_endpoint.h"
@@ -37,6 +38,7 @@ struct Options {
   int64_t epoch_ns = 0;  // 0: with the first message
   double seconds = std::numeric_limits<double>::infinity();
   std::string state = DefaultStateFolder();
+  std::string stepped_clock;
   int priority = 80;
 };
 
@@ -80,13 +82,13 @@ struct Tally {
 };
 
 Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, std::optional<Sealer>& sealer,
-              LcmEndpoint& lcm) {
+              LcmEndpoint& lcm, Clock& clock) {
   Tally tally;
   MessageBuffer buffer;
-  int64_t k = grid.Next(MonotonicNow());
+  int64_t k = grid.Next(clock.Now());
   while (stop_requested == 0 && grid.PathTime(k) < seconds) {
-    SleepUntil(grid.Stamp(k));
-    if (MonotonicNow() < grid.Stamp(k)) continue;  // a signal woke it
+    clock.SleepUntil(grid.Stamp(k));
+    if (clock.Now() < grid.Stamp(k)) continue;  // a signal woke it
 
     leader_t message = MessageAt(path, grid.PathTime(k));
     message.stamp_ns = grid.Stamp(k);
@@ -94,7 +96,7 @@ Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, std::opt
     const auto sealed = SealIfKeyed(sealer, kLeaderChannel, Encode(message, &buffer), &buffer);
     lcm.Publish(kLeaderChannel, sealed) ? ++tally.sent : ++tally.refused;
 
-    const int64_t next = std::max(k + 1, grid.Next(MonotonicNow()));
+    const int64_t next = std::max(k + 1, grid.Next(clock.Now()));
     tally.skipped += next - (k + 1);
     k = next;
   }
@@ -125,22 +127,30 @@ int Run(const Options& options) {
   } else {
     std::cerr << "armada-leader: " << WarningOf(scenario->fleet.link) << '\n';
   }
+  const bool stepped = !options.stepped_clock.empty();
   const auto url = ParseLcmUrl(scenario->fleet.link.lcm_url, &error);
-  const auto lcm = url ? LcmEndpoint::Open(*url, &error) : nullptr;
+  if (url && !stepped) error = WhyNotReal(identity, scenario->fleet.link);
+  const auto clock = error.empty() ? OpenProgramClock(options.stepped_clock, *url, {}, &error) : nullptr;
+  if (!clock) {
+    std::cerr << "armada-leader: " << error << '\n';
+    return kExitBadConfig;
+  }
+  const auto lcm = LcmEndpoint::Open(*url, clock.get(), &error);
   if (!lcm) {
     std::cerr << "armada-leader: " << error << '\n';
     return kExitFailed;
   }
 
-  const RealtimeGrant grant = EnterRealtime(options.priority);
+  const RealtimeGrant grant = stepped ? RealtimeGrant{} : EnterRealtime(options.priority);
   if (!grant.complaint.empty()) std::cerr << "armada-leader: " << grant.complaint << '\n';
   const double rate_hz = scenario->leader.rate_hz;
-  const int64_t first_ns = MonotonicNow() + std::llround(1e9 / rate_hz);
+  const int64_t first_ns = clock->Now() + std::llround(1e9 / rate_hz);
   const int64_t epoch_ns = options.epoch_ns > 0 ? options.epoch_ns : first_ns;
   std::cout << "armada-leader: " << kLeaderChannel << " at " << rate_hz << " Hz on " << ToString(*url)
             << ", epoch " << epoch_ns << " ns" << std::endl;
   const Tally tally =
-      Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm);
+      Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm,
+              *clock);
   std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
             << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
   return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;
@@ -162,6 +172,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", options.sets, "key=value in place of the scenario's; may be repeated")->expected(1);
   app.add_option("--state", options.state, "folder for what must survive restarts: the number of starts")
       ->capture_default_str();
+  app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));
   try {

@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
 
   RunOptions run;
   run.program_directory = ProgramDirectory();
-  CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes in real time");
+  CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes");
   run.scenario.AddTo(run_command);
   run_command
       ->add_option(
@@ -122,6 +122,17 @@ int main(int argc, char** argv) {
       ->add_option("--hil-bus", run.hil_buses,
                    "ARM=BUS: the emulation's end of an arm's bus, where it has another name than the board's")
       ->allow_extra_args(false);
+  run_command
+      ->add_option("--time", run.time,
+                   "real: the machine's time. stepped: time stands while a program computes or a message is "
+                   "unread, so that a slow or busy machine changes nothing; --bus udp only")
+      ->take_last()
+      ->capture_default_str();
+  run_command
+      ->add_option("--pace", run.pace,
+                   "--time stepped: seconds of the run a real second, 0.01 to 100; 0: as fast as it goes")
+      ->take_last()
+      ->capture_default_str();
   run_command->add_option("--seed", run.seed, "seed of start states, disturbance and noise")
       ->capture_default_str();
   run_command->add_option("--out", run.out, "directory for logs, traces and results")

@@ -19,10 +19,12 @@ int32_t Microseconds(int64_t duration_ns) {
 
 }  // namespace
 
-ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns)
+ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, Clock* clock, const TimingConfig& timing,
+                 int64_t epoch_ns)
     : node_(node),
       bus_(bus),
       link_(link),
+      clock_(clock),
       period_ns_(Nanoseconds(timing.period_s)),
       feedback_timeout_ns_(Nanoseconds(timing.feedback_timeout_s)),
       transmit_timeout_ns_(Nanoseconds(timing.transmit_timeout_s)),
@@ -31,7 +33,7 @@ ArmLoop::ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConf
 
 bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
   bool ready = false;
-  const int64_t periods_ahead = std::max<int64_t>(0, (epoch_ns_ - MonotonicNow()) / period_ns_);
+  const int64_t periods_ahead = std::max<int64_t>(0, (epoch_ns_ - clock_->Now()) / period_ns_);
   for (int64_t tick_ns = epoch_ns_ - periods_ahead * period_ns_; tick_ns < epoch_ns_; tick_ns += period_ns_) {
     ListenUntil(tick_ns);
     if (*stop != 0) return false;
@@ -46,13 +48,13 @@ bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
 
 void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   int64_t tick_ns = epoch_ns_;
-  SleepUntil(tick_ns);
+  clock_->SleepUntil(tick_ns);
   heap_at_start_ = static_cast<int64_t>(HeapCounter::Allocations());
   faults_at_start_ = PageFaults();
   while (tick_ns < end_ns) {
     ListenUntil(tick_ns);
     if (*stop != 0) break;
-    const int64_t now_ns = MonotonicNow();
+    const int64_t now_ns = clock_->Now();
     if (const int64_t late_periods = (now_ns - tick_ns) / period_ns_; late_periods > 0) {
       report_.missed_ticks += late_periods;  // gone; the newest one is done, not all of them
       missed_before_tick_ = late_periods;
@@ -66,22 +68,22 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   node_->Disable(&out_);
   bus_->DropWaiting();
   Send();
-  ConfirmSent(MonotonicNow() + period_ns_);
+  ConfirmSent(clock_->Now() + period_ns_);
 }
 
 void ArmLoop::ListenUntil(int64_t time_ns) {
   for (int part = listens_ - 1; part > 0; --part) {
-    SleepUntil(time_ns - part * period_ns_ / listens_);
+    clock_->SleepUntil(time_ns - part * period_ns_ / listens_);
     TakeWaitingMessages();
   }
-  SleepUntil(time_ns);
+  clock_->SleepUntil(time_ns);
 }
 
 void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
   link_->Publish(node_->estimate_channel(), node_->EncodeEstimate(tick_ns, &buffer_));
   TakeWaitingFrames();
   out_.Clear();
-  const int64_t request_ns = MonotonicNow();
+  const int64_t request_ns = clock_->Now();
   node_->RequestSamples(request_ns, &out_);
   Send();
   const int64_t feedback_ns = AwaitSamples(tick_ns + feedback_timeout_ns_);
@@ -92,8 +94,8 @@ void ArmLoop::Tick(int64_t tick_ns, int64_t woken_ns) {
   node_->Step(tick_ns, &out_);
   if (node_->state() == ControllerState::kFault) bus_->DropWaiting();  // nothing old before the drives' rest
   Send();
-  ConfirmSent(MonotonicNow() + transmit_timeout_ns_);
-  const int64_t sent_ns = MonotonicNow();
+  ConfirmSent(clock_->Now() + transmit_timeout_ns_);
+  const int64_t sent_ns = clock_->Now();
   node_->bus_watch().OnTick(tick_ns, 1e-9 * static_cast<double>(sent_ns - tick_ns), missed_before_tick_);
   missed_before_tick_ = 0;
   AnswerOperator(tick_ns);
@@ -131,7 +133,7 @@ int64_t ArmLoop::AwaitSamples(int64_t deadline_ns) {
     if (status != BusStatus::kOk) break;
     node_->OnFrame(frame);
   }
-  return MonotonicNow();
+  return clock_->Now();
 }
 
 void ArmLoop::TakeWaitingFrames() {

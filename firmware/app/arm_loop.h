@@ -6,6 +6,7 @@
 #include "firmware/app/arm_node.h"
 #include "firmware/app/duration_histogram.h"
 #include "firmware/can/bus.h"
+#include "firmware/clock/clock.h"
 #include "firmware/link/lcm_endpoint.h"
 
 namespace armada {
@@ -27,7 +28,9 @@ struct LoopReport {
 /// and logs nothing after the first tick.
 class ArmLoop {
  public:
-  ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, const TimingConfig& timing, int64_t epoch_ns);
+  /// What is pointed to outlives the object.
+  ArmLoop(ArmNode* node, CanBus* bus, LcmEndpoint* link, Clock* clock, const TimingConfig& timing,
+          int64_t epoch_ns);
 
   /// Emulation only: brings the drives up until the epoch. False when one of them is not in torque mode by
   /// then, or on `*stop`.
@@ -59,6 +62,7 @@ class ArmLoop {
   ArmNode* node_;
   CanBus* bus_;
   LcmEndpoint* link_;
+  Clock* clock_;
   int64_t period_ns_;
   int64_t feedback_timeout_ns_;
   int64_t transmit_timeout_ns_;

@@ -14,6 +14,7 @@
 #include "firmware/app/initial_state.h"
 #include "firmware/app/link_identity.h"
 #include "firmware/app/loop_report.h"
+#include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
 #include "firmware/app/whole_file.h"
 #include "firmware/can/open_bus.h"
@@ -43,6 +44,7 @@ struct Options {
   std::string learned;
   std::string state = DefaultStateFolder();
   std::string json;
+  std::string stepped_clock;
   int priority = 80;
   bool running = false;
 };
@@ -80,26 +82,35 @@ int Run(const Options& options) {
     return kExitBadConfig;
   }
   if (!identity) std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, WarningOf(fleet->link).c_str());
+  const bool stepped = !options.stepped_clock.empty();
   const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
-  const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
+  if (!url) return Fail(options, error);
+  if (!stepped) error = WhyNotReal(identity, fleet->link);
+  const auto clock =
+      error.empty() ? OpenProgramClock(options.stepped_clock, *url, {entry.bus}, &error) : nullptr;
+  if (!clock) {
+    std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, error.c_str());
+    return kExitBadConfig;
+  }
+  const auto link = LcmEndpoint::Open(*url, clock.get(), &error);
   if (!link) return Fail(options, error);
-  const auto bus = OpenBus(entry.bus, BusOptionsOf(entry), &error);
+  const auto bus = OpenBus(entry.bus, BusOptionsOf(entry), clock.get(), &error);
   if (!bus) return Fail(options, error);
 
-  const RealtimeGrant grant = EnterRealtime(options.priority);
+  const RealtimeGrant grant = stepped ? RealtimeGrant{} : EnterRealtime(options.priority);
   if (!grant.complaint.empty())
     std::fprintf(stderr, "armada-arm %d: %s\n", options.arm_id, grant.complaint.c_str());
   StopOnSignals();
 
   const int64_t epoch_ns = options.epoch_ns > 0
                                ? options.epoch_ns
-                               : MonotonicNow() + static_cast<int64_t>(fleet->timing.bring_up_s * 1e9);
+                               : clock->Now() + static_cast<int64_t>(fleet->timing.bring_up_s * 1e9);
   const int64_t end_ns = options.seconds > 0.0 ? epoch_ns + static_cast<int64_t>(options.seconds * 1e9)
                                                : std::numeric_limits<int64_t>::max();
   const BoardStart start{options.running ? StartMode::kRunning : StartMode::kMonitor, FleetDigest(*fleet),
                          identity};
   const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, start);
-  const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), fleet->timing, epoch_ns);
+  const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), clock.get(), fleet->timing, epoch_ns);
   if (options.running && !loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
                              ? "stopped before the start"
@@ -107,7 +118,7 @@ int Run(const Options& options) {
                                    " reached torque mode before the start: " + node->ExplainDrives());
   }
   loop->Run(end_ns, &stop_requested);
-  LeaveRealtime();
+  if (!stepped) LeaveRealtime();
 
   const auto report = [&](std::ostream& file) { WriteLoopReport(*loop, *node, *bus, *link, grant, file); };
   if (!options.json.empty() && !WriteWhole(options.json, report, &error)) return Fail(options, error);
@@ -146,6 +157,7 @@ int main(int argc, char** argv) {
                "emulated arms only: enable the drives before the fleet's time 0, and run from there on. "
                "HAZARD: no operator is asked");
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
+  app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
       ->check(CLI::Range(0, 99));
   try {

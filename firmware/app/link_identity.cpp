@@ -60,4 +60,10 @@ std::string WarningOf(const LcmLinkConfig& link) {
          " can move the arms";
 }
 
+std::string WhyNotReal(const std::optional<LinkIdentity>& identity, const LcmLinkConfig& link) {
+  if (!identity || !IsSeeded(identity->key)) return "";
+  return "key " + link.key_file +
+         ": is of a run in stepped time, made of its seed, and no secret; `armada key new` makes one";
+}
+
 }  // namespace armada

@@ -21,4 +21,7 @@ bool TakeIdentity(const LcmLinkConfig& link, int sender, const std::string& stat
 /// What to tell people about a fleet without a key; empty when it has one.
 std::string WarningOf(const LcmLinkConfig& link);
 
+/// What speaks against a program that is not of a run in stepped time having this identity; empty if nothing.
+std::string WhyNotReal(const std::optional<LinkIdentity>& identity, const LcmLinkConfig& link);
+
 }  // namespace armada

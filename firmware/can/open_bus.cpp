@@ -6,12 +6,13 @@
 
 namespace armada {
 
-std::unique_ptr<CanBus> OpenBus(std::string_view name, const BusOptions& options, std::string* error) {
+std::unique_ptr<CanBus> OpenBus(std::string_view name, const BusOptions& options, Clock* clock,
+                                std::string* error) {
   const auto parsed = ParseBusName(name, error);
   if (!parsed) return nullptr;
   switch (parsed->kind) {
     case BusKind::kUdp:
-      return UdpCanBus::Open(parsed->group, parsed->port, parsed->ttl, error);
+      return UdpCanBus::Open(parsed->group, parsed->port, parsed->ttl, clock, error);
     case BusKind::kSocketCan:
       return SocketCanBus::Open(parsed->interface_name, options, error);
   }

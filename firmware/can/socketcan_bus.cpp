@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "firmware/can/can_link.h"
-#include "firmware/can/monotonic.h"
+#include "firmware/clock/monotonic.h"
 
 namespace armada {
 namespace {
@@ -250,7 +250,8 @@ void SocketCanBus::ReadControl(const msghdr& message, CanFrame* frame) {
     if (header->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-      frame->stamp_ns = MonotonicOfWall(stamp);
+      frame->stamp_ns =
+          MonotonicOfWall(Nanoseconds(stamp), Now_ns(CLOCK_REALTIME), Now_ns(CLOCK_MONOTONIC));
     } else if (header->cmsg_type == SO_RXQ_OVFL) {
       uint32_t overflowed = 0;
       std::memcpy(&overflowed, CMSG_DATA(header), sizeof overflowed);

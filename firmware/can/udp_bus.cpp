@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "firmware/can/monotonic.h"
+#include "firmware/clock/monotonic.h"
 #include "firmware/can/udp_frame_codec.h"
 
 namespace armada {
@@ -20,15 +20,16 @@ constexpr size_t kMaxDatagramBytes = 1024;
 /// past them to a frame, a flood of them must not hold the loop.
 constexpr int kMaxDropped = 64;
 
-/// Time of reception on CLOCK_MONOTONIC: the kernel's, which may be long before the datagram is taken.
-int64_t ReceptionTime_ns(const msghdr& message) {
+/// Time of reception: the kernel's, which may be long before the datagram is taken.
+int64_t ReceptionTime_ns(const msghdr& message, const Clock& clock) {
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
   if (header == nullptr || header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_TIMESTAMPNS) {
-    return Now_ns(CLOCK_MONOTONIC);
+    return clock.Now();
   }
   timespec stamp{};
   std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-  return MonotonicOfWall(stamp);
+  const int64_t now_ns = clock.Now();
+  return MonotonicOfWall(clock.WallTimeOf(stamp), clock.WallNow(), now_ns);
 }
 
 bool SetOption(const UniqueFd& socket, int level, int option, int value) {
@@ -55,7 +56,7 @@ std::string Explain(const std::string& group, uint16_t port, const char* step, i
 }  // namespace
 
 std::unique_ptr<UdpCanBus> UdpCanBus::Open(const std::string& group, uint16_t port, uint8_t ttl,
-                                           std::string* error) {
+                                           Clock* clock, std::string* error) {
   const auto failed = [&](const char* step) {
     *error = Explain(group, port, step, errno);
     return nullptr;
@@ -88,18 +89,21 @@ std::unique_ptr<UdpCanBus> UdpCanBus::Open(const std::string& group, uint16_t po
   if (getsockname(sender.get(), reinterpret_cast<sockaddr*>(&own_address), &size) != 0) {
     return failed("read the own address");
   }
-  return std::unique_ptr<UdpCanBus>(new UdpCanBus(std::move(sender), std::move(receiver), own_address));
+  clock->Joined(receiver.get(), address);
+  return std::unique_ptr<UdpCanBus>(
+      new UdpCanBus(std::move(sender), std::move(receiver), own_address, address, clock));
 }
 
 BusStatus UdpCanBus::Send(const CanFrame& frame) {
   UdpFrameBuffer buffer;
-  const size_t size = EncodeUdpFrame(frame, 1e-9 * static_cast<double>(Now_ns(CLOCK_REALTIME)), &buffer);
+  const size_t size = EncodeUdpFrame(frame, 1e-9 * static_cast<double>(clock_->WallNow()), &buffer);
   if (size == 0) {
     ++counters_.malformed;
     return BusStatus::kQueueFull;
   }
   if (send(sender_.get(), buffer.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) {
     ++counters_.sent;
+    clock_->Sent(group_);
     return BusStatus::kOk;
   }
   if (errno != EAGAIN && errno != ENOBUFS) return BusStatus::kDown;
@@ -118,16 +122,14 @@ BusStatus UdpCanBus::Receive(int64_t deadline_ns, CanFrame* frame) {
         return BusStatus::kDown;
       case Taken::kDropped:
         if (++dropped < kMaxDropped) continue;
-        if (Now_ns(CLOCK_MONOTONIC) >= deadline_ns) return BusStatus::kTimeout;
+        if (clock_->Now() >= deadline_ns) return BusStatus::kTimeout;
         continue;
       case Taken::kNothing:
         break;
     }
-    const int64_t left_ns = deadline_ns - Now_ns(CLOCK_MONOTONIC);
-    if (left_ns <= 0) return BusStatus::kTimeout;
-    const timespec left{left_ns / kNsPerS, left_ns % kNsPerS};
+    if (clock_->Now() >= deadline_ns) return BusStatus::kTimeout;
     pollfd input{receiver_.get(), POLLIN, 0};
-    if (ppoll(&input, 1, &left, nullptr) < 0 && errno != EINTR) return BusStatus::kDown;
+    clock_->Wait({&input, 1}, deadline_ns);
   }
 }
 
@@ -143,8 +145,12 @@ UdpCanBus::Taken UdpCanBus::TakeDatagram(CanFrame* frame) {
   message.msg_iovlen = 1;
   message.msg_control = control.data();
   message.msg_controllen = control.size();
-  const ssize_t size = recvmsg(receiver_.get(), &message, MSG_DONTWAIT);
+  ssize_t size = 0;
+  do {
+    size = recvmsg(receiver_.get(), &message, MSG_DONTWAIT);
+  } while (size < 0 && errno == EAGAIN && clock_->Took(receiver_.get(), 0));
   if (size < 0) return errno == EAGAIN || errno == EINTR ? Taken::kNothing : Taken::kDown;
+  clock_->Took(receiver_.get(), 1);
   if (from.sin_port == own_address_.sin_port && from.sin_addr.s_addr == own_address_.sin_addr.s_addr) {
     return Taken::kDropped;
   }
@@ -153,7 +159,7 @@ UdpCanBus::Taken UdpCanBus::TakeDatagram(CanFrame* frame) {
     ++counters_.malformed;
     return Taken::kDropped;
   }
-  frame->stamp_ns = ReceptionTime_ns(message);
+  frame->stamp_ns = ReceptionTime_ns(message, *clock_);
   return Taken::kFrame;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "firmware/can/bus.h"
+#include "firmware/clock/clock.h"
 #include "firmware/unique_fd.h"
 
 namespace armada {
@@ -17,8 +18,9 @@ namespace armada {
 /// not kept.
 class UdpCanBus final : public CanBus {
  public:
-  /// `group`: IPv4 multicast, dotted. Null on failure, and then `error` says what failed and what to do.
-  static std::unique_ptr<UdpCanBus> Open(const std::string& group, uint16_t port, uint8_t ttl,
+  /// `group`: IPv4 multicast, dotted. `clock` outlives the object. Null on failure, and then `error` says what
+  /// failed and what to do.
+  static std::unique_ptr<UdpCanBus> Open(const std::string& group, uint16_t port, uint8_t ttl, Clock* clock,
                                          std::string* error);
 
   BusStatus Send(const CanFrame& frame) override;
@@ -30,8 +32,13 @@ class UdpCanBus final : public CanBus {
  private:
   enum class Taken { kFrame, kNothing, kDropped, kDown };
 
-  UdpCanBus(UniqueFd sender, UniqueFd receiver, const sockaddr_in& own_address)
-      : sender_(std::move(sender)), receiver_(std::move(receiver)), own_address_(own_address) {}
+  UdpCanBus(UniqueFd sender, UniqueFd receiver, const sockaddr_in& own_address, const sockaddr_in& group,
+            Clock* clock)
+      : sender_(std::move(sender)),
+        receiver_(std::move(receiver)),
+        own_address_(own_address),
+        group_(group),
+        clock_(clock) {}
 
   /// Takes one datagram from the socket, without waiting.
   Taken TakeDatagram(CanFrame* frame);
@@ -39,6 +46,8 @@ class UdpCanBus final : public CanBus {
   UniqueFd sender_;  ///< a port of its own: frames that come from it are ours, and only those
   UniqueFd receiver_;
   sockaddr_in own_address_;
+  sockaddr_in group_;
+  Clock* clock_;
 };
 
 }  // namespace armada

@@ -16,6 +16,8 @@ namespace armada {
 namespace {
 
 constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
+constexpr std::string_view kNoSecret = "armada, stepped, seed: ";  // a seed follows
+static_assert(kNoSecret.size() + 9 == kFleetKeySize);
 
 std::string Octal(mode_t mode) {
   char text[8];
@@ -61,20 +63,39 @@ std::optional<FleetKey> LoadFleetKey(const std::string& path, std::string* error
   return key;
 }
 
+FleetKey SeededKey(uint64_t seed) {
+  FleetKey key{};
+  auto* next = std::copy(kNoSecret.begin(), kNoSecret.end(), key.begin());
+  for (int i = 0; i < 8; ++i) *next++ = static_cast<uint8_t>(seed >> 8 * i);
+  return key;
+}
+
+bool IsSeeded(const FleetKey& key) {
+  return std::equal(kNoSecret.begin(), kNoSecret.end(), key.begin());
+}
+
 bool MakeFleetKey(const std::string& path, std::string* error) {
+  if (sodium_init() < 0) {
+    *error = "key " + path + ": libsodium does not start";
+    return false;
+  }
+  FleetKey key{};
+  randombytes_buf(key.data(), key.size());
+  const bool written = WriteFleetKey(path, key, error);
+  sodium_memzero(key.data(), key.size());
+  return written;
+}
+
+bool WriteFleetKey(const std::string& path, const FleetKey& key, std::string* error) {
   const auto fail = [&](const std::string& what) {
     *error = "key " + path + ": " + what;
     return false;
   };
-  if (sodium_init() < 0) return fail("libsodium does not start");
   const UniqueFd file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!file.valid()) return fail(std::strerror(errno));
-  FleetKey key{};
-  randombytes_buf(key.data(), key.size());
   const bool written =
       write(file.get(), key.data(), key.size()) == static_cast<ssize_t>(key.size()) && fsync(file.get()) == 0;
   const int cause = errno;
-  sodium_memzero(key.data(), key.size());
   if (written) return true;
   unlink(path.c_str());
   return fail(std::strerror(cause));

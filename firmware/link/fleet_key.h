@@ -17,6 +17,13 @@ using FleetKey = std::array<uint8_t, kFleetKeySize>;
 /// user or to root. Nothing, with *error set, for any other. Start-up only.
 std::optional<FleetKey> LoadFleetKey(const std::string& path, std::string* error);
 
+/// The key of a run in stepped time, where nothing is random. It says of itself that it is no secret.
+FleetKey SeededKey(uint64_t seed);
+bool IsSeeded(const FleetKey& key);
+
+/// Makes a file with this key, as MakeFleetKey does.
+bool WriteFleetKey(const std::string& path, const FleetKey& key, std::string* error);
+
 /// Makes a file with a new random key, mode 0600, on the disk when this returns; never over an existing one.
 /// False with *error set.
 bool MakeFleetKey(const std::string& path, std::string* error);

@@ -19,16 +19,6 @@ namespace {
 // traffic, which a stalled loop can sleep through. Kernels allow that much to everyone.
 constexpr int kQueueBytes = 208 * 1024;
 
-int64_t ToNs(const timespec& time) {
-  return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
-}
-
-int64_t ClockNs(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return ToNs(now);
-}
-
 template <class Value>
 bool SetOption(int socket, int level, int option, const Value& value) {
   return setsockopt(socket, level, option, &value, sizeof(value)) == 0;
@@ -65,7 +55,7 @@ bool Configure(int socket, int ttl) {
 
 }  // namespace
 
-std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, std::string* error) {
+std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, Clock* clock, std::string* error) {
   const auto fail = [&](const std::string& what) {
     *error = "LCM " + ToString(url) + ": " + what;
     return nullptr;
@@ -78,7 +68,7 @@ std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, std::string* e
 
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (socket < 0) return fail(std::string("cannot open a socket: ") + std::strerror(errno));
-  std::unique_ptr<LcmEndpoint> endpoint(new LcmEndpoint(socket, group));
+  std::unique_ptr<LcmEndpoint> endpoint(new LcmEndpoint(socket, group, clock));
 
   if (!Bind(socket, group)) return fail(std::string("cannot bind: ") + std::strerror(errno));
   if (!Configure(socket, url.ttl))
@@ -92,10 +82,12 @@ std::unique_ptr<LcmEndpoint> LcmEndpoint::Open(const LcmUrl& url, std::string* e
                     "private network"
                   : ""));
   }
+  clock->Joined(socket, group);
   return endpoint;
 }
 
-LcmEndpoint::LcmEndpoint(int socket, const sockaddr_in& group) : socket_(socket), group_(group) {
+LcmEndpoint::LcmEndpoint(int socket, const sockaddr_in& group, Clock* clock)
+    : socket_(socket), group_(group), clock_(clock) {
   for (size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
     slot.part = {slot.datagram.data(), slot.datagram.size()};
@@ -122,6 +114,7 @@ bool LcmEndpoint::Publish(std::string_view channel, std::span<const uint8_t> pay
   }
   ++sequence_;
   ++counters_.sent;
+  clock_->Sent(group_);
   return true;
 }
 
@@ -129,12 +122,13 @@ int LcmEndpoint::ReceiveBatch(int wanted) {
   for (mmsghdr& header : headers_) header.msg_hdr.msg_controllen = sizeof(Slot::control);
   const int got = recvmmsg(socket_, headers_.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
   CompareClocks();
+  more_ = clock_->Took(socket_, got);
   return std::max(got, 0);
 }
 
 void LcmEndpoint::CompareClocks() {
-  const int64_t wall_ns = ClockNs(CLOCK_REALTIME);
-  arrival_.Update(wall_ns, ClockNs(CLOCK_MONOTONIC));
+  const int64_t wall_ns = clock_->WallNow();
+  arrival_.Update(wall_ns, clock_->Now());
 }
 
 std::optional<LcmMessage> LcmEndpoint::Read(int index) {
@@ -157,7 +151,7 @@ int64_t LcmEndpoint::ReadControl(msghdr* header) {
     if (item->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(item), sizeof(stamp));
-      arrival_ns = arrival_.ToMonotonic(ToNs(stamp));
+      arrival_ns = arrival_.ToMonotonic(clock_->WallTimeOf(stamp));
     } else if (item->cmsg_type == SO_RXQ_OVFL) {
       uint32_t dropped = 0;
       std::memcpy(&dropped, CMSG_DATA(item), sizeof(dropped));

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "firmware/clock/clock.h"
 #include "firmware/link/arrival_clock.h"
 #include "firmware/link/lcm_message.h"
 #include "firmware/link/lcm_url.h"
@@ -44,9 +45,9 @@ class LcmEndpoint {
   /// Datagrams one Drain takes at most.
   static constexpr int kMaxPerDrain = 640;
 
-  /// Joins the group. On failure returns nothing and sets `*error` to the reason and what to do. Start-up
-  /// only.
-  static std::unique_ptr<LcmEndpoint> Open(const LcmUrl& url, std::string* error);
+  /// Joins the group. `clock` outlives the object. On failure returns nothing and sets `*error` to the reason
+  /// and what to do. Start-up only.
+  static std::unique_ptr<LcmEndpoint> Open(const LcmUrl& url, Clock* clock, std::string* error);
 
   LcmEndpoint(const LcmEndpoint&) = delete;
   LcmEndpoint& operator=(const LcmEndpoint&) = delete;
@@ -68,7 +69,7 @@ class LcmEndpoint {
         if (const auto message = Read(i)) handler(*message);
       }
       taken += got;
-      if (got < wanted) break;
+      if (got < wanted && !more_) break;
     }
     return taken;
   }
@@ -87,7 +88,7 @@ class LcmEndpoint {
     iovec part;
   };
 
-  LcmEndpoint(int socket, const sockaddr_in& group);
+  LcmEndpoint(int socket, const sockaddr_in& group, Clock* clock);
 
   /// Takes up to `wanted` datagrams into the slots and returns their number.
   int ReceiveBatch(int wanted);
@@ -99,6 +100,8 @@ class LcmEndpoint {
 
   int socket_;
   sockaddr_in group_;
+  Clock* clock_;
+  bool more_ = false;  ///< the last batch was not the last datagram
   uint32_t sequence_ = 0;
   ArrivalClock arrival_;
   LcmCounters counters_;

@@ -9,6 +9,7 @@
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/realtime.h"
 #include "firmware/can/open_bus.h"
+#include "firmware/clock/machine_clock.h"
 #include "host/can/bus_source.h"
 #include "host/can/can_check.h"
 #include "host/can/candump_reader.h"
@@ -113,7 +114,7 @@ int DecodeLog(std::istream& in, const std::string& name, const std::vector<BusMe
 
 int DecodeBus(const DecodeOptions& options, const std::vector<BusMessage>& messages) {
   std::string error;
-  const auto bus = OpenBus(options.bus, OptionsAsFound(options.bus), &error);
+  const auto bus = OpenBus(options.bus, OptionsAsFound(options.bus), MachineClock::Get(), &error);
   if (bus == nullptr) return Fail(error);
   const int64_t begin_ns = MonotonicNow();
   const int64_t end_ns = begin_ns + static_cast<int64_t>(options.seconds * 1e9);
@@ -175,7 +176,7 @@ int RunScan(const ScanCommand& command) {
   const BusOptions as_found = OptionsAsFound(command.bus);
   options.fd = as_found.fd;
   std::string error;
-  const auto bus = OpenBus(command.bus, as_found, &error);
+  const auto bus = OpenBus(command.bus, as_found, MachineClock::Get(), &error);
   if (bus == nullptr) return Fail(error);
   const ScanResult result = Scan(bus.get(), options, MonotonicNow());
   command.json ? PrintJson(result, std::cout) : PrintText(result, std::cout);

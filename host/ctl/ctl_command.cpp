@@ -9,6 +9,7 @@
 
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
+#include "firmware/clock/machine_clock.h"
 #include "firmware/link/fleet_key.h"
 #include "host/ctl/operator_call.h"
 
@@ -54,7 +55,7 @@ int Call(const Options& options, Request request) {
     if (!key) return Fail(error, kExitBadConfig);
   }
   const auto url = ParseLcmUrl(fleet->link.lcm_url, &error);
-  const auto link = url ? LcmEndpoint::Open(*url, &error) : nullptr;
+  const auto link = url ? LcmEndpoint::Open(*url, MachineClock::Get(), &error) : nullptr;
   if (!link) return Fail(error);
 
   OperatorCall call(FleetDigest(*fleet), request, ids, key);

@@ -59,7 +59,8 @@ std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_
   std::vector<RunFinding> findings;
   for (const FaultConfig& fault : evidence.scenario->faults) {
     const FaultMaker maker = MeaningOf(fault.kind).maker;
-    if (maker != FaultMaker::kEmulation && fault.kind != FaultKind::kCpuHog) continue;
+    const bool hog = fault.kind == FaultKind::kCpuHog && evidence.real_time;
+    if (maker != FaultMaker::kEmulation && !hog) continue;
     findings.push_back(
         FaultFinding(fault.arm, fault.at_s, "fault " + std::string(NameOf(fault.kind)) + OfArm(fault.arm)));
   }
@@ -114,7 +115,7 @@ std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
       findings.push_back({"emulation", 0, at_s, text + TimeText(at_s)});
     }
   }
-  if (!has_priority)
+  if (!has_priority && evidence.real_time)
     findings.push_back({"priority", 0, std::nullopt, "boards or emulation had no real-time priority"});
   return findings;
 }

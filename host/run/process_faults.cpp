@@ -3,11 +3,8 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 
-#include "firmware/app/realtime.h"
 #include "host/run/link_switch.h"
 
 namespace armada {
@@ -34,16 +31,16 @@ class Foremost {
   }
 };
 
-// Signals of children end a sleep early.
-void SleepThrough(int64_t until_ns) {
-  while (MonotonicNow() < until_ns) SleepUntil(until_ns);
-}
-
 }  // namespace
 
 ProcessFaults::ProcessFaults(const std::vector<FaultConfig>& faults,
-                             const std::map<int, std::string>& interfaces, int64_t epoch_ns, int64_t end_ns)
-    : interfaces_(interfaces), epoch_ns_(epoch_ns), end_ns_(end_ns) {
+                             const std::map<int, std::string>& interfaces, Clock* clock, bool stepped,
+                             int64_t epoch_ns, int64_t end_ns)
+    : interfaces_(interfaces),
+      clock_(clock),
+      lead_ns_(stepped ? 0 : kLead_ns),
+      epoch_ns_(epoch_ns),
+      end_ns_(end_ns) {
   for (const FaultConfig& fault : faults) Add(fault);
 }
 
@@ -87,6 +84,7 @@ void ProcessFaults::Plan(const FaultConfig& fault) {
       AddStep(fault.until_s, Deed::kLinkUp, fault.arm);
       break;
     case FaultKind::kCpuHog:
+      if (lead_ns_ == 0) break;  // stepped: whoever computes is waited for
       hogs_.emplace_back(static_cast<int>(fault.value), TimeOf(fault.at_s),
                          std::min(TimeOf(fault.until_s), end_ns_));
       break;
@@ -95,23 +93,27 @@ void ProcessFaults::Plan(const FaultConfig& fault) {
   }
 }
 
-ProcessGroup::Duration ProcessFaults::TimeLeft(ProcessGroup::Duration longest) const {
-  if (next_ == steps_.size()) return longest;
-  const ProcessGroup::Duration left(steps_[next_].at_ns - kLead_ns - MonotonicNow());
-  return std::clamp(left, ProcessGroup::Duration::zero(), longest);
+int64_t ProcessFaults::Next() const {
+  return next_ == steps_.size() ? INT64_MAX : steps_[next_].at_ns - lead_ns_;
 }
 
-bool ProcessFaults::MakeDue(ProcessGroup* group,
+// Signals of children end a sleep early.
+void ProcessFaults::SleepThrough(int64_t until_ns) const {
+  while (clock_->Now() < until_ns) clock_->SleepUntil(until_ns);
+}
+
+bool ProcessFaults::MakeDue(ProgramControl* control,
                             const std::function<bool(int arm_id, std::string* error)>& start,
                             std::string* error) {
-  const auto is_due = [&] { return TimeLeft(ProcessGroup::Duration(1)) == ProcessGroup::Duration::zero(); };
+  const auto is_due = [&] { return Next() <= clock_->Now(); };
   if (!is_due()) return true;
-  const Foremost foremost;  // until the last: of two close together the second has no lead of its own
+  std::optional<Foremost> foremost;  // until the last: of two close together the second has no lead of its own
+  if (lead_ns_ > 0) foremost.emplace();
   do {
     const Step step = steps_[next_++];
     SleepThrough(step.at_ns);
-    const double made_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
-    if (!Make(step, group, start, error)) return false;
+    const double made_s = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
+    if (!Make(step, control, start, error)) return false;
     const bool link = step.deed == Deed::kLinkDown || step.deed == Deed::kLinkUp;
     made_.push_back({NameOf(step.deed), link ? interfaces_.at(step.arm_id) : ProcessOf(step.arm_id),
                      1e-9 * static_cast<double>(step.at_ns - epoch_ns_), made_s});
@@ -119,21 +121,21 @@ bool ProcessFaults::MakeDue(ProcessGroup* group,
   return true;
 }
 
-bool ProcessFaults::Make(const Step& step, ProcessGroup* group,
+bool ProcessFaults::Make(const Step& step, ProgramControl* control,
                          const std::function<bool(int arm_id, std::string* error)>& start,
                          std::string* error) {
   switch (step.deed) {
     case Deed::kKill:
-      Kill(step.arm_id, group);
+      Kill(step.arm_id, control);
       return true;
     case Deed::kStopForGood:
-      if (group->Signal(ProcessOf(step.arm_id), SIGSTOP)) stopped_for_good_.insert(step.arm_id);
+      if (control->Stop(ProcessOf(step.arm_id))) stopped_for_good_.insert(step.arm_id);
       return true;
     case Deed::kStop:
-      group->Signal(ProcessOf(step.arm_id), SIGSTOP);
+      control->Stop(ProcessOf(step.arm_id));
       return true;
     case Deed::kContinue:
-      group->Signal(ProcessOf(step.arm_id), SIGCONT);
+      control->Continue(ProcessOf(step.arm_id));
       stopped_for_good_.erase(step.arm_id);
       return true;
     case Deed::kStart:
@@ -147,8 +149,8 @@ bool ProcessFaults::Make(const Step& step, ProcessGroup* group,
   return true;
 }
 
-void ProcessFaults::Kill(int arm_id, ProcessGroup* group) {
-  if (!group->Signal(ProcessOf(arm_id), SIGKILL)) return;  // it is dead already
+void ProcessFaults::Kill(int arm_id, ProgramControl* control) {
+  if (!control->Kill(ProcessOf(arm_id))) return;  // it is dead already
   ordered_.insert(ProcessOf(arm_id));
   stopped_for_good_.erase(arm_id);
   if (arm_id != 0) dead_arms_.insert(arm_id);
@@ -171,9 +173,9 @@ bool ProcessFaults::TakeOrdered(const ProcessExit& ended) {
   return true;
 }
 
-void ProcessFaults::KillStopped(ProcessGroup* group) {
+void ProcessFaults::KillStopped(ProgramControl* control) {
   const std::set<int> stopped = stopped_for_good_;
-  for (const int arm_id : stopped) Kill(arm_id, group);
+  for (const int arm_id : stopped) Kill(arm_id, control);
 }
 
 const char* ProcessFaults::NameOf(Deed deed) {

@@ -9,15 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "firmware/clock/clock.h"
 #include "hil/fault.h"
-#include "host/process_group.h"
 #include "host/run/cpu_hog.h"
+#include "host/run/program_control.h"
 
 namespace armada {
 
-/// The faults of a run in real time that are made from outside of the programs: one is killed, stopped,
-/// started anew, a CAN interface is set down, a processor kept busy. Used by the main thread, like the
-/// ProcessGroup.
+/// The faults of a run that are made from outside of the programs: one is killed, stopped, started anew, a CAN
+/// interface is set down, a processor kept busy; the last not in stepped time, where computing takes none. Used
+/// by the main thread, like the ProcessGroup.
 class ProcessFaults {
  public:
   /// What was done, and when.
@@ -33,9 +34,10 @@ class ProcessFaults {
   static constexpr const char* kLeaderProcess = "leader";
 
   /// `interfaces`: CAN interfaces that are the board's alone, by arm; another one is also the emulation's
-  /// end, and stays up. What would be over after `end_ns` never is.
+  /// end, and stays up. What would be over after `end_ns` never is. `clock`, stepped or the machine's, outlives
+  /// the object.
   ProcessFaults(const std::vector<FaultConfig>& faults, const std::map<int, std::string>& interfaces,
-                int64_t epoch_ns, int64_t end_ns);
+                Clock* clock, bool stepped, int64_t epoch_ns, int64_t end_ns);
   ProcessFaults(const ProcessFaults&) = delete;
   ProcessFaults& operator=(const ProcessFaults&) = delete;
   /// Interfaces that are still down are set up.
@@ -44,12 +46,12 @@ class ProcessFaults {
   /// From now on there is this fault, too.
   void Add(const FaultConfig& fault);
 
-  /// How long the caller may do something else, at most `longest`.
-  ProcessGroup::Duration TimeLeft(ProcessGroup::Duration longest) const;
+  /// Until when the caller may do something else.
+  int64_t Next() const;
 
   /// Makes those that come within the next moment, each at its time. `start` starts a controller anew. False
   /// with `*error` set.
-  bool MakeDue(ProcessGroup* group, const std::function<bool(int arm_id, std::string* error)>& start,
+  bool MakeDue(ProgramControl* control, const std::function<bool(int arm_id, std::string* error)>& start,
                std::string* error);
 
   /// Whether the program's end was ordered here; asked once for each end.
@@ -58,7 +60,7 @@ class ProcessFaults {
   /// Programs that are stopped and will not go on.
   size_t stopped_for_good() const { return stopped_for_good_.size(); }
   /// Kills these: asked to end, they would first go on.
-  void KillStopped(ProcessGroup* group);
+  void KillStopped(ProgramControl* control);
 
   /// Arms whose controller there is no more.
   const std::set<int>& dead_arms() const { return dead_arms_; }
@@ -76,14 +78,18 @@ class ProcessFaults {
   void AddStep(double at_s, Deed deed, int arm_id);
   bool Ends(const FaultConfig& fault) const { return TimeOf(fault.until_s) < end_ns_; }
   int64_t TimeOf(double t_s) const;
-  bool Make(const Step& step, ProcessGroup* group,
+  bool Make(const Step& step, ProgramControl* control,
             const std::function<bool(int arm_id, std::string* error)>& start, std::string* error);
-  void Kill(int arm_id, ProcessGroup* group);
+  void Kill(int arm_id, ProgramControl* control);
   bool Switch(int arm_id, bool up, std::string* error);
   static const char* NameOf(Deed deed);
   static std::string ProcessOf(int arm_id) { return arm_id == 0 ? kLeaderProcess : ArmProcess(arm_id); }
 
+  void SleepThrough(int64_t until_ns) const;
+
   std::map<int, std::string> interfaces_;
+  Clock* clock_;
+  int64_t lead_ns_;  ///< before a step, in which this process takes its priority; 0 in stepped time
   int64_t epoch_ns_;
   int64_t end_ns_;
   std::vector<Step> steps_;  ///< in order

@@ -11,8 +11,8 @@
 
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/initial_state.h"
-#include "firmware/app/realtime.h"
 #include "firmware/can/bus_name.h"
+#include "firmware/clock/machine_clock.h"
 #include "hil/live_faults.h"
 #include "hil/scenario_file.h"
 #include "hil/start_state.h"
@@ -22,6 +22,7 @@
 #include "host/run/board_lateness.h"
 #include "host/run/board_networks.h"
 #include "host/run/heartbeat.h"
+#include "host/run/lcm_log.h"
 #include "host/run/process_faults.h"
 #include "host/run/run_buses.h"
 #include "host/run/run_diagnosis.h"
@@ -30,6 +31,7 @@
 #include "host/run/run_recorder.h"
 #include "host/run/run_reservation.h"
 #include "host/run/run_result.h"
+#include "host/run/stepped_time.h"
 #include "host/run/virtual_can.h"
 
 namespace armada {
@@ -37,9 +39,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
 
 constexpr int64_t kStartUpNs = 2'000'000'000;  // processes, sockets and drives are up well before
 constexpr double kOverrun_s = 5.0;             // a program that has not ended by then is stuck
+constexpr int64_t kMoment_ns = 5'000'000;      // between two looks at what goes on
 
 int Fail(const std::string& message) {
   std::cerr << "armada run: " << message << '\n';
@@ -71,7 +75,7 @@ bool PrepareFolder(const fs::path& directory, std::string* error) {
 class Run {
  public:
   Run(const RunOptions& options, ScenarioConfig scenario)
-      : options_(options), scenario_(std::move(scenario)), out_(options.out) {}
+      : options_(options), scenario_(std::move(scenario)), out_(options.out), clock_(MachineClock::Get()) {}
 
   bool Prepare(std::string* error);
   bool Execute(std::string* error);
@@ -92,7 +96,12 @@ class Run {
   bool StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error);
   std::map<int, std::string> BoardInterfaces() const;
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
+  /// Words of a program's command line that say whose time it takes.
+  std::vector<std::string> ClockArguments(const std::string& program);
+  bool OpenLcmLog(ProcessGroup* group, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
+  std::optional<ProcessExit> Pass(ProcessGroup* group);
+  void TakeMessages();
   bool FinishedItsRun(const ProcessExit& ended) const;
   bool MakeFaults(ProcessGroup* group, std::string* error);
   void TakeLiveFaults();
@@ -107,11 +116,15 @@ class Run {
   ScenarioConfig scenario_;
   fs::path out_;
   RunReservation reservation_;
-  VirtualCan virtual_can_;  // before what uses it: removed last
+  VirtualCan virtual_can_;                // before what uses it: removed last
+  std::unique_ptr<SteppedTime> stepped_;  ///< null: the machine's time
+  Clock* clock_;
   FleetKey key_{};
   int64_t epoch_ns_ = 0;
   std::unique_ptr<LcmEndpoint> link_;
   std::unique_ptr<RunRecorder> recorder_;
+  std::unique_ptr<LcmLog> lcm_log_;  ///< stepped time; in the machine's lcm-logger writes it
+  std::unique_ptr<ProgramControl> control_;
   std::optional<ProcessFaults> faults_;
   std::unique_ptr<LiveFaults> live_faults_;
   std::optional<Heartbeat> heartbeat_;
@@ -125,7 +138,9 @@ class Run {
 bool Run::MakeKey(std::string* error) {
   std::string& file = scenario_.fleet.link.key_file;
   file = fs::absolute(In("fleet.key")).string();
-  if (!MakeFleetKey(file, error)) return false;
+  const bool made =
+      stepped_ ? WriteFleetKey(file, SeededKey(options_.seed), error) : MakeFleetKey(file, error);
+  if (!made) return false;
   const auto key = LoadFleetKey(file, error);
   if (key) key_ = *key;
   return key.has_value();
@@ -152,8 +167,13 @@ bool Run::WriteInputs(std::string* error) {
 
 bool Run::Prepare(std::string* error) {
   if (!MakeNetworks(error)) return false;
+  if (options_.time == "stepped") {
+    stepped_ = SteppedTime::Create(options_.pace, error);
+    if (!stepped_) return false;
+    clock_ = stepped_.get();
+  }
   const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
-  link_ = url ? LcmEndpoint::Open(*url, error) : nullptr;
+  link_ = url ? LcmEndpoint::Open(*url, clock_, error) : nullptr;
   return link_ != nullptr && WriteInputs(error);
 }
 
@@ -220,16 +240,26 @@ bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::s
   return group->Start({name, std::move(argv), {}, In(log_name + ".txt")}, error);
 }
 
+std::vector<std::string> Run::ClockArguments(const std::string& program) {
+  return stepped_ ? stepped_->ArgumentsFor(program) : std::vector<std::string>{};
+}
+
+bool Run::OpenLcmLog(ProcessGroup* group, std::string* error) {
+  if (stepped_) {
+    lcm_log_ = LcmLog::Create(In("lcm.log"), error);
+    return lcm_log_ != nullptr;
+  }
+  return Start(group, "lcm-logger",
+               {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url,
+                In("lcm.log")},
+               error);
+}
+
 bool Run::StartAll(ProcessGroup* group, std::string* error) {
-  epoch_ns_ = MonotonicNow() + kStartUpNs;
+  epoch_ns_ = clock_->Now() + kStartUpNs;
   recorder_ = std::make_unique<RunRecorder>(scenario_, epoch_ns_, key_);
   const std::string epoch = std::to_string(epoch_ns_);
-  if (!Start(group, "lcm-logger",
-             {"/usr/bin/lcm-logger", "--quiet", "--force", "--lcm-url=" + scenario_.fleet.link.lcm_url,
-              In("lcm.log")},
-             error)) {
-    return false;
-  }
+  if (!OpenLcmLog(group, error)) return false;
   std::vector<std::string> hil = {Program("armada-hil"),
                                   In("scenario.toml"),
                                   "--seed",
@@ -241,19 +271,33 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
                                   "--out",
                                   out_.string()};
   for (const std::string& bus : options_.hil_buses) hil.insert(hil.end(), {"--bus", bus});
+  const auto stepped = ClockArguments("hil");
+  hil.insert(hil.end(), stepped.begin(), stepped.end());
   if (!Start(group, "hil", std::move(hil), error)) return false;
   for (const ArmEntry& arm : scenario_.fleet.arms) {
     if (!StartBoard(arm.id, false, group, error)) return false;
   }
-  if (scenario_.leader.kind != LeaderKind::kNone &&
-      !Start(group, ProcessFaults::kLeaderProcess,
-             {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch, "--seconds", Seconds(),
-              "--state", In("state")},
-             error)) {
-    return false;
+  if (scenario_.leader.kind != LeaderKind::kNone) {
+    std::vector<std::string> leader = {Program("armada-leader"),
+                                       In("scenario.toml"),
+                                       "--epoch-ns",
+                                       epoch,
+                                       "--seconds",
+                                       Seconds(),
+                                       "--state",
+                                       In("state")};
+    const auto of_time = ClockArguments(ProcessFaults::kLeaderProcess);
+    leader.insert(leader.end(), of_time.begin(), of_time.end());
+    if (!Start(group, ProcessFaults::kLeaderProcess, std::move(leader), error)) return false;
+  }
+  if (stepped_ && !stepped_->AwaitPrograms(group, error)) return false;
+  if (stepped_) {
+    control_ = std::make_unique<SteppedControl>(stepped_.get(), group);
+  } else {
+    control_ = std::make_unique<SignalControl>(group);
   }
   running_ = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
-  faults_.emplace(scenario_.faults, BoardInterfaces(), epoch_ns_,
+  faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, stepped_ != nullptr, epoch_ns_,
                   epoch_ns_ + static_cast<int64_t>(scenario_.seconds * 1e9));
   return true;
 }
@@ -269,8 +313,12 @@ bool Run::StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* er
                 In("state"), "--json", In("arm_" + id + ".json")});
   if (!anew) board.insert(board.end(), {"--initial", In("initial_" + id + ".toml")});
   if (!anew && scenario_.start.mode == StartMode::kRunning) board.emplace_back("--running");
+  const std::string name = ProcessFaults::ArmProcess(arm_id);
+  const auto stepped = ClockArguments(name);
+  board.insert(board.end(), stepped.begin(), stepped.end());
   const std::string log = In("arm_" + id + (anew ? "_anew" : "") + ".txt");
-  return group->Start({ProcessFaults::ArmProcess(arm_id), std::move(board), {}, log}, error);
+  return group->Start({name, std::move(board), {}, log}, error) &&
+         (!anew || !stepped_ || stepped_->AwaitPrograms(group, error));
 }
 
 // Where the emulation has another end of the bus, the board's can go down without it.
@@ -287,7 +335,7 @@ std::map<int, std::string> Run::BoardInterfaces() const {
 }
 
 void Run::ShowProgress() {
-  const double t_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
+  const double t_s = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   double worst_m = 0.0;
   int64_t missed = 0;
   size_t heard = 0;
@@ -319,13 +367,13 @@ bool Run::FinishedItsRun(const ProcessExit& ended) const {
 
 void Run::TakeLiveFaults() {
   if (live_faults_ == nullptr) return;  // not every file system has pipes
-  const double now_s = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
+  const double now_s = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   while (const auto fault = live_faults_->Take(now_s)) faults_->Add(*fault);
 }
 
 bool Run::MakeFaults(ProcessGroup* group, std::string* error) {
   return faults_->MakeDue(
-      group,
+      control_.get(),
       [&](int arm_id, std::string* why) {
         ++running_;
         return StartBoard(arm_id, true, group, why);
@@ -333,13 +381,29 @@ bool Run::MakeFaults(ProcessGroup* group, std::string* error) {
       error);
 }
 
+// Time goes on, for a moment. Returns a program that has ended, if one has.
+std::optional<ProcessExit> Run::Pass(ProcessGroup* group) {
+  const int64_t now_ns = clock_->Now();
+  const int64_t until_ns = std::clamp(faults_->Next(), now_ns, now_ns + kMoment_ns);
+  if (!stepped_) return group->Poll(nanoseconds(until_ns - now_ns));
+  pollfd input{link_->descriptor(), POLLIN, 0};
+  return stepped_->Pass(group, {&input, 1}, until_ns);
+}
+
+void Run::TakeMessages() {
+  link_->Drain([&](const LcmMessage& message) {
+    recorder_->OnMessage(message);
+    if (lcm_log_) lcm_log_->Write(message, message.arrival_ns + clock_->WallNow() - clock_->Now());
+  });
+}
+
 bool Run::Watch(ProcessGroup* group, std::string* error) {
   const int64_t end_ns = epoch_ns_ + static_cast<int64_t>((scenario_.seconds + kOverrun_s) * 1e9);
   const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
   int64_t next_progress_ns = 0;
   while (running_ > faults_->stopped_for_good()) {
-    const auto ended = group->Poll(faults_->TimeLeft(milliseconds(5)));
-    link_->Drain([&](const LcmMessage& message) { recorder_->OnMessage(message); });
+    const auto ended = Pass(group);
+    TakeMessages();
     TakeLiveFaults();
     if (!MakeFaults(group, error)) return false;
     if (ended) {
@@ -350,17 +414,20 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
       }
       --running_;
     }
+    if (stepped_ && !stepped_->trouble().empty()) {
+      *error = stepped_->trouble();
+      return false;
+    }
     if (ProcessGroup::StopRequested()) {
       interrupted_ = true;
       *error = "interrupted; everything is stopped";
       return false;
     }
-    const int64_t now_ns = MonotonicNow();
-    if (now_ns > end_ns) {
+    if (clock_->Now() > end_ns) {
       *error = "a program is still running " + std::to_string(kOverrun_s) + " s after the end";
       return false;
     }
-    if (now_ns >= next_progress_ns) {
+    if (const int64_t now_ns = MachineClock::Get()->Now(); now_ns >= next_progress_ns) {
       ShowProgress();
       next_progress_ns = now_ns + progress_every_ns;
     }
@@ -371,11 +438,12 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
 
 bool Run::Execute(std::string* error) {
   ProcessGroup group;
-  heartbeat_.emplace(static_cast<int64_t>(TolerableLateness_s(scenario_.fleet.timing) * 1e9));
+  if (!stepped_) heartbeat_.emplace(static_cast<int64_t>(TolerableLateness_s(scenario_.fleet.timing) * 1e9));
   const bool done = StartAll(&group, error) && Watch(&group, error);
-  heartbeat_->Stop();
-  ended_s_ = 1e-9 * static_cast<double>(MonotonicNow() - epoch_ns_);
-  if (faults_) faults_->KillStopped(&group);
+  if (heartbeat_) heartbeat_->Stop();
+  ended_s_ = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
+  if (faults_) faults_->KillStopped(control_.get());
+  if (stepped_) stepped_->Release();
   group.StopAll(milliseconds(2000));
   return done;
 }
@@ -385,9 +453,23 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
     *error = "not every arm was heard on " + scenario_.fleet.link.lcm_url;
     return false;
   }
+  if (lcm_log_ && !lcm_log_->Close(error)) return false;
+  if (stepped_ && stepped_->lost() > 0) {
+    *error =
+        std::to_string(stepped_->lost()) +
+        " datagrams were sent and never arrived: this machine's network cannot carry a run in stepped time";
+    return false;
+  }
   if (!recorder_->WriteTraces(out_.string(), error)) return false;
   if (!CollectRunResult(scenario_, options_.seed, *recorder_, *faults_, out_.string(), metrics, json, error))
     return false;
+  (*json)["time"] = options_.time;
+  if (stepped_) {
+    (*json)["timing"] = {{"pace", options_.pace},
+                         {"stepped_s", stepped_->stepped_s()},
+                         {"real_s", stepped_->real_s()},
+                         {"datagrams_late", stepped_->late()}};
+  }
   RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
                                         heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
   evidence.metrics = metrics;
@@ -407,6 +489,29 @@ std::vector<RunFinding> Run::DiagnoseEnd(const std::string& why) const {
   return Diagnose(evidence);
 }
 
+// What is wrong with the options of time; empty when nothing is.
+std::string CheckTime(const RunOptions& options, const ScenarioConfig& scenario) {
+  constexpr double kMinPace = 0.01;
+  constexpr double kMaxPace = 100.0;
+  if (options.time != "real" && options.time != "stepped") {
+    return "--time " + options.time + ": there are real (the machine's time) and stepped (time that waits)";
+  }
+  if (options.time == "real") return options.pace == 1.0 ? "" : "--pace is for --time stepped";
+  if (options.bus != "udp") return "--time stepped is for --bus udp: the kernel's CAN does not wait";
+  if (options.pace != 0.0 && !(options.pace >= kMinPace && options.pace <= kMaxPace))
+    return "--pace: allowed are 0, as fast as it goes, and 0.01 to 100";
+  std::string error;
+  const auto url = ParseLcmUrl(scenario.fleet.link.lcm_url, &error);
+  if (url && url->ttl > 0)
+    return "--time stepped: link.lcm_url has ttl=" + std::to_string(url->ttl) + ", other boards do not wait";
+  for (const FaultConfig& fault : scenario.faults) {
+    if (fault.kind == FaultKind::kCpuHog)
+      std::cerr << "armada run: fault cpu_hog at " << fault.at_s
+                << " s is left out: computing takes no stepped time\n";
+  }
+  return error;
+}
+
 }  // namespace
 
 int RunRunCommand(const RunOptions& options) {
@@ -422,6 +527,10 @@ int RunRunCommand(const RunOptions& options) {
   }
   if (!scenario->operations.empty()) {
     std::cerr << "armada run: [[operator]] is of virtual time; here `armada ctl` asks\n";
+    return kExitUsage;
+  }
+  if (const std::string wrong = CheckTime(options, *scenario); !wrong.empty()) {
+    std::cerr << "armada run: " << wrong << '\n';
     return kExitUsage;
   }
   std::string error;
@@ -446,7 +555,15 @@ int RunRunCommand(const RunOptions& options) {
     return run.interrupted() ? kExitInterrupted : code;
   }
   PrintArmTable(metrics, std::cout);
-  PrintProcessTable(json, std::cout);
+  if (options.time == "stepped") {
+    const nlohmann::ordered_json& timing = json.at("timing");
+    const double stepped_s = timing.at("stepped_s").get<double>();
+    const double real_s = timing.at("real_s").get<double>();
+    std::printf("stepped time: %.1f s in %.1f s, %.1f times real time; computing took none of it\n",
+                stepped_s, real_s, stepped_s / real_s);
+  } else {
+    PrintProcessTable(json, std::cout);
+  }
   PrintFindings(run.findings(), metrics.ok, std::cout);
   return metrics.ok ? kExitOk : kExitFailed;
 }

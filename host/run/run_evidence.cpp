@@ -31,7 +31,8 @@ RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_
                              i < benches.size() ? benches[i] : Json()});
   }
   if (faults != nullptr) evidence.faults_made = faults->made();
-  if (heartbeat != nullptr) {
+  evidence.real_time = heartbeat != nullptr;
+  if (evidence.real_time) {
     evidence.stalls = heartbeat->Stalls();
     evidence.heartbeat_is_foremost = heartbeat->is_foremost();
     evidence.processors = heartbeat->processors();

@@ -33,6 +33,7 @@ struct RunEvidence {
   std::vector<Arm> arms;
   Json hil;                             ///< hil.json, or null
   const RunMetrics* metrics = nullptr;  ///< none when the run broke off
+  bool real_time = true;                ///< the machine's; else none of it counts
   std::vector<Stall> stalls;
   bool heartbeat_is_foremost = true;
   int processors = 1;
@@ -43,8 +44,8 @@ struct RunEvidence {
   double TimeOf(int64_t t_ns) const { return 1e-9 * static_cast<double>(t_ns - epoch_ns); }
 };
 
-/// Everything but how the run ended. `heartbeat`, `faults`: may be null. The recorder and the scenario
-/// outlive the result.
+/// Everything but how the run ended. `faults`: may be null; `heartbeat`: null in stepped time. The recorder
+/// and the scenario outlive the result.
 RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_t epoch_ns,
                            const RunRecorder& recorder, const ProcessFaults* faults,
                            const Heartbeat* heartbeat, const std::string& directory);

@@ -6,6 +6,7 @@
 
 #include "firmware/app/initial_state.h"
 #include "firmware/app/realtime.h"
+#include "firmware/clock/machine_clock.h"
 #include "hil/scenario_file.h"
 #include "tests/link/private_network_fixture.h"
 
@@ -40,14 +41,14 @@ TEST_F(ArmLoopTest, NoMessageIsLostWhileTheDrivesComeUp) {
   const auto scenario = LoadScenario(ARMADA_SOURCE_DIR "/hil/scenarios/benign.toml", {}, &errors);
   ASSERT_TRUE(errors.empty());
   std::string error;
-  const auto leader = LcmEndpoint::Open(LcmUrl(), &error);
-  const auto link = LcmEndpoint::Open(LcmUrl(), &error);
+  const auto leader = LcmEndpoint::Open(LcmUrl(), MachineClock::Get(), &error);
+  const auto link = LcmEndpoint::Open(LcmUrl(), MachineClock::Get(), &error);
   ASSERT_TRUE(leader != nullptr && link != nullptr) << error;
 
   const int64_t epoch_ns = MonotonicNow() + 200'000'000;
   ArmNode node(scenario->fleet, 0, NominalInitialState(scenario->fleet.arms[0]), epoch_ns, {});
   TalkativeBus bus(leader.get());
-  ArmLoop loop(&node, &bus, link.get(), scenario->fleet.timing, epoch_ns);
+  ArmLoop loop(&node, &bus, link.get(), MachineClock::Get(), scenario->fleet.timing, epoch_ns);
   const volatile std::sig_atomic_t never = 0;
   EXPECT_FALSE(loop.BringUp(&never)) << "there are no drives";
 

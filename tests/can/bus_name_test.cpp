@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/can/open_bus.h"
+#include "firmware/clock/machine_clock.h"
 
 namespace armada {
 namespace {
@@ -72,14 +73,14 @@ TEST(BusName, ABadNameIsRefusedWithWhatWasGivenAndWhatIsAllowed) {
 
 TEST(OpenBus, SaysWhatToDoWithoutAnInterface) {
   std::string error;
-  EXPECT_EQ(OpenBus("socketcan:nosuchcan", {}, &error), nullptr);
+  EXPECT_EQ(OpenBus("socketcan:nosuchcan", {}, MachineClock::Get(), &error), nullptr);
   EXPECT_NE(error.find("bus socketcan:nosuchcan"), std::string::npos) << error;
   EXPECT_NE(error.find("sudo "), std::string::npos) << error;
 }
 
 TEST(OpenBus, PassesOnWhatIsWrongWithAName) {
   std::string error;
-  EXPECT_EQ(OpenBus("udp:1.2.3.4:5", {}, &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:1.2.3.4:5", {}, MachineClock::Get(), &error), nullptr);
   EXPECT_NE(error.find("1.2.3.4"), std::string::npos) << error;
 }
 

@@ -5,6 +5,7 @@
 
 #include "firmware/can/udp_bus.h"
 #include "firmware/can/udp_frame_codec.h"
+#include "firmware/clock/machine_clock.h"
 #include "tests/can/frames.h"
 #include "tests/can/private_network.h"
 #include "tests/can/python_judge.h"
@@ -73,7 +74,7 @@ TEST(PythonCan, ReceivesWhatTheBusSends) {
   PythonJudge judge({"bus", kGroup, std::to_string(kPort)});
   ASSERT_EQ(judge.Answer(), "ready");
   std::string error;
-  const auto bus = UdpCanBus::Open(kGroup, kPort, 0, &error);
+  const auto bus = UdpCanBus::Open(kGroup, kPort, 0, MachineClock::Get(), &error);
   ASSERT_NE(bus, nullptr) << error;
   std::mt19937_64 random(4);
   for (int i = 0; i < 100; ++i) {
@@ -87,7 +88,7 @@ TEST(PythonCan, ReceivesWhatTheBusSends) {
 TEST(PythonCan, SendsWhatTheBusReceives) {
   ASSERT_EQ(EnterPrivateNetwork(MulticastRoute::kYes), "");
   std::string error;
-  const auto bus = UdpCanBus::Open(kGroup, kPort, 0, &error);
+  const auto bus = UdpCanBus::Open(kGroup, kPort, 0, MachineClock::Get(), &error);
   ASSERT_NE(bus, nullptr) << error;
   PythonJudge judge({"bus", kGroup, std::to_string(kPort)});
   ASSERT_EQ(judge.Answer(), "ready");

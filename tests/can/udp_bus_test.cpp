@@ -12,6 +12,7 @@
 
 #include "firmware/can/open_bus.h"
 #include "firmware/can/udp_frame_codec.h"
+#include "firmware/clock/machine_clock.h"
 #include "tests/can/frames.h"
 #include "tests/can/private_network.h"
 #include "tests/support/limit_malloc.h"
@@ -55,7 +56,7 @@ class UdpBus : public testing::Test {
 
   static std::unique_ptr<UdpCanBus> Open(const char* group = kGroup) {
     std::string error;
-    auto bus = UdpCanBus::Open(group, kPort, 0, &error);
+    auto bus = UdpCanBus::Open(group, kPort, 0, MachineClock::Get(), &error);
     EXPECT_NE(bus, nullptr) << error;
     return bus;
   }
@@ -278,7 +279,7 @@ TEST_F(UdpBus, APortHeldByAnotherProgramIsReported) {
   any.sin_port = htons(kPort);
   ASSERT_EQ(bind(holder.get(), reinterpret_cast<sockaddr*>(&any), sizeof any), 0);
   std::string error;
-  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, MachineClock::Get(), &error), nullptr);
   EXPECT_NE(error.find("udp:239.74.163.11:43113: cannot bind"), std::string::npos) << error;
   EXPECT_NE(error.find("Another program holds the port"), std::string::npos) << error;
 }
@@ -286,7 +287,7 @@ TEST_F(UdpBus, APortHeldByAnotherProgramIsReported) {
 TEST(UdpBusWithoutRoute, SaysHowToMakeOne) {
   ASSERT_EQ(EnterPrivateNetwork(MulticastRoute::kNo), "");
   std::string error;
-  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, &error), nullptr);
+  EXPECT_EQ(OpenBus("udp:239.74.163.11:43113", {}, MachineClock::Get(), &error), nullptr);
   EXPECT_NE(error.find("udp:239.74.163.11:43113"), std::string::npos) << error;
   EXPECT_NE(error.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << error;
 }

@@ -16,6 +16,7 @@
 #include "firmware/app/realtime.h"
 #include "firmware/can/odrive_cansimple.h"
 #include "firmware/can/open_bus.h"
+#include "firmware/clock/machine_clock.h"
 #include "host/private_network.h"
 #include "host/process_group.h"
 #include "tests/hil/command_output.h"
@@ -65,7 +66,7 @@ class Board {
  public:
   Board() {
     std::string error;
-    bus_ = OpenBus(kBus, {}, &error);
+    bus_ = OpenBus(kBus, {}, MachineClock::Get(), &error);
     EXPECT_NE(bus_, nullptr) << error;
   }
 

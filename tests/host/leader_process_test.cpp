@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "firmware/app/realtime.h"
+#include "firmware/clock/machine_clock.h"
 #include "firmware/link/channels.h"
 #include "firmware/link/lcm_endpoint.h"
 #include "firmware/link/messages.h"
@@ -26,7 +27,7 @@ class LeaderProcess : public PrivateNetworkTest {
   void SetUp() override {
     PrivateNetworkTest::SetUp();
     std::string error;
-    listener_ = LcmEndpoint::Open({}, &error);
+    listener_ = LcmEndpoint::Open({}, MachineClock::Get(), &error);
     ASSERT_NE(listener_, nullptr) << error;
   }
 

@@ -4,11 +4,12 @@
 #include <sys/wait.h>
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 
-#include "firmware/app/realtime.h"
+#include "firmware/clock/machine_clock.h"
 
 namespace armada {
 namespace {
@@ -35,14 +36,16 @@ class ProcessFaultsTest : public testing::Test {
 
   /// Those that have ended until the run's end.
   std::vector<ProcessExit> Run(const std::vector<FaultConfig>& faults) {
-    epoch_ns_ = MonotonicNow() + 30 * kMs;
+    Clock* const clock = MachineClock::Get();
+    epoch_ns_ = clock->Now() + 30 * kMs;
     const int64_t end_ns = epoch_ns_ + static_cast<int64_t>(kEnd_s * 1e9);
-    faults_.emplace(faults, std::map<int, std::string>{}, epoch_ns_, end_ns);
+    faults_.emplace(faults, std::map<int, std::string>{}, clock, false, epoch_ns_, end_ns);
     std::vector<ProcessExit> ended;
-    while (MonotonicNow() < end_ns) {
-      if (auto one = group_.Poll(faults_->TimeLeft(milliseconds(5)))) ended.push_back(*one);
+    while (clock->Now() < end_ns) {
+      const int64_t left_ns = std::clamp<int64_t>(faults_->Next() - clock->Now(), 0, 5 * kMs);
+      if (auto one = group_.Poll(std::chrono::nanoseconds(left_ns))) ended.push_back(*one);
       EXPECT_TRUE(faults_->MakeDue(
-          &group_,
+          &control_,
           [&](int arm_id, std::string*) {
             Start(ProcessFaults::ArmProcess(arm_id));
             return true;
@@ -65,6 +68,7 @@ class ProcessFaultsTest : public testing::Test {
 
   std::string error_;
   ProcessGroup group_;
+  SignalControl control_{&group_};
   int64_t epoch_ns_ = 0;
   std::optional<ProcessFaults> faults_;
 };
@@ -98,7 +102,7 @@ TEST_F(ProcessFaultsTest, AStoppedControllerGoesOnAtItsTime) {
 TEST_F(ProcessFaultsTest, AControllerThatIsStoppedBeyondTheEndIsKilledThereWithoutGoingOn) {
   EXPECT_TRUE(Run({Fault(FaultKind::kControllerStops, 0.1, kEnd_s + 1.0)}).empty());
   EXPECT_EQ(faults_->stopped_for_good(), 1u);
-  faults_->KillStopped(&group_);
+  faults_->KillStopped(&control_);
   EXPECT_EQ(faults_->stopped_for_good(), 0u);
   const auto ended = group_.Poll(milliseconds(20000));
   ASSERT_TRUE(ended.has_value());

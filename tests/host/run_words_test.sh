@@ -18,7 +18,7 @@ trap clean_up EXIT
 
 # start NAME SECONDS: a run in the background, its emulation and its boards up.
 start() {
-  "$armada" run "$scenario" --seconds "$2" --set window_start_s=1.0 --out "$work/$1" >"$work/$1.txt" 2>&1 &
+  "$armada" run "$scenario" --time real --seconds "$2" --set window_start_s=1.0 --out "$work/$1" >"$work/$1.txt" 2>&1 &
   run=$!
   wait_for 20 up "$1" || fail "$1 did not begin: $(cat "$work/$1.txt")"
 }
@@ -50,7 +50,7 @@ start stalled 7
 expect 2 "stalled is in use by another run .process $run.: wait for its end, or give this one another folder" \
   "$armada" run "$scenario" --out "$work/stalled"
 expect 2 'stalled is in use by another run' "$armada" report "$work/stalled"
-"$armada" run "$scenario" --seconds 0.5 --set window_start_s=0.1 --out "$work/second" >"$work/second.txt" 2>&1
+"$armada" run "$scenario" --time real --seconds 0.5 --set window_start_s=0.1 --out "$work/second" >"$work/second.txt" 2>&1
 [ $? -le 1 ] || fail "a second run: $(cat "$work/second.txt")"
 says second "udpm://239.255.76.67:7667 is in use by another run .process $run.: running in a private network namespace"
 [ -s "$work/second/metrics.json" ] || fail "a second run has no result: $(cat "$work/second.txt")"
@@ -93,7 +93,7 @@ run_on_small_disk() { # run_on_small_disk SIZE
   mkdir -p "$work/disk"
   unshare --mount sh -c 'mount -t tmpfs -o size="$1" none "$2" && shift 2 && exec "$@"' sh "$1" "$work/disk" \
     bash -c '"$@"; code=$?; cp -r "$0" "$0.kept"; exit $code' "$work/disk" \
-    "$armada" run "$scenario" --seconds 4 --set window_start_s=1.0 --out "$work/disk/run"
+    "$armada" run "$scenario" --time real --seconds 4 --set window_start_s=1.0 --out "$work/disk/run"
 }
 if [ "$(id -u)" = 0 ] && unshare --mount true 2>/dev/null; then
   for size in 16k 400k; do

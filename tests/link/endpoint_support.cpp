@@ -10,6 +10,8 @@
 
 #include <cstring>
 
+#include "firmware/clock/machine_clock.h"
+
 namespace armada {
 namespace {
 
@@ -24,7 +26,7 @@ bool HasInput(const LcmEndpoint& endpoint, int timeout_ms) {
 
 std::unique_ptr<LcmEndpoint> OpenEndpoint() {
   std::string error;
-  auto endpoint = LcmEndpoint::Open(LcmUrl(), &error);
+  auto endpoint = LcmEndpoint::Open(LcmUrl(), MachineClock::Get(), &error);
   EXPECT_NE(endpoint, nullptr) << error;
   return endpoint;
 }

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "firmware/clock/machine_clock.h"
 #include "firmware/link/lcm_packet.h"
 #include "tests/link/endpoint_support.h"
 #include "tests/link/private_network_fixture.h"
@@ -28,7 +29,7 @@ class Endpoint : public PrivateNetworkTest {};
 TEST_F(Endpoint, SaysWhatToDoWhenThereIsNoMulticastRoute) {
   WithoutRoutes([] {
     std::string error;
-    EXPECT_EQ(LcmEndpoint::Open(LcmUrl(), &error), nullptr);
+    EXPECT_EQ(LcmEndpoint::Open(LcmUrl(), MachineClock::Get(), &error), nullptr);
     for (const char* part : {"udpm://239.255.76.67:7667?ttl=0", "ip link set lo up multicast on",
                              "ip route add 224.0.0.0/4 dev lo", "armada run"}) {
       EXPECT_NE(error.find(part), std::string::npos) << error;

@@ -15,6 +15,7 @@
 #include "firmware/app/arm_loop.h"
 #include "firmware/app/realtime.h"
 #include "firmware/can/open_bus.h"
+#include "firmware/clock/machine_clock.h"
 #include "firmware/link/lcm_endpoint.h"
 #include "hil/hil_server.h"
 #include "hil/scenario_file.h"
@@ -91,11 +92,11 @@ class BoardFaults : public testing::Test {
     std::string error;
     const ArmEntry& arm = scenario_.fleet.arms[0];
     std::vector<std::unique_ptr<CanBus>> drive_buses;
-    drive_buses.push_back(std::make_unique<FaultyBus>(OpenBus(arm.bus, {}, &error)));
+    drive_buses.push_back(std::make_unique<FaultyBus>(OpenBus(arm.bus, {}, MachineClock::Get(), &error)));
     auto* drives = static_cast<FaultyBus*>(drive_buses[0].get());
-    const auto bus = OpenBus(arm.bus, BusOptionsOf(arm), &error);
+    const auto bus = OpenBus(arm.bus, BusOptionsOf(arm), MachineClock::Get(), &error);
     const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, &error);
-    const auto link = LcmEndpoint::Open(*url, &error);
+    const auto link = LcmEndpoint::Open(*url, MachineClock::Get(), &error);
     ASSERT_TRUE(bus != nullptr && link != nullptr) << error;
     StartWitness();
 
@@ -112,7 +113,7 @@ class BoardFaults : public testing::Test {
     });
     node_ = std::make_unique<ArmNode>(scenario_.fleet, 0, start.controller, epoch_ns,
                                       BoardStart{StartMode::kRunning, 0, std::nullopt});
-    ArmLoop loop(node_.get(), bus.get(), link.get(), scenario_.fleet.timing, epoch_ns);
+    ArmLoop loop(node_.get(), bus.get(), link.get(), MachineClock::Get(), scenario_.fleet.timing, epoch_ns);
     const volatile std::sig_atomic_t never = 0;
     ASSERT_TRUE(loop.BringUp(&never)) << node_->ExplainDrives();
     loop.Run(epoch_ns + static_cast<int64_t>(kEnd_s * 1e9), &never);

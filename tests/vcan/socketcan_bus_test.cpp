@@ -7,7 +7,7 @@
 #include <random>
 
 #include "firmware/can/can_link.h"
-#include "firmware/can/monotonic.h"
+#include "firmware/clock/monotonic.h"
 #include "tests/can/frames.h"
 #include "tests/support/limit_malloc.h"
 #include "tests/vcan/vcan_interface.h"
