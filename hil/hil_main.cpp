@@ -148,6 +148,8 @@ HilReport Serve(const ScenarioConfig& scenario, const Options& options, int64_t 
   report.seconds = std::max(0.0, server.time_s());
   report.arms = server.Results();
   report.pacing = server.pacing();
+  report.latest_at_s = server.latest_at_s();
+  report.faults_taken = server.faults_taken();
   return report;
 }
 
@@ -203,8 +205,8 @@ int Run(const Options& options) {
   }
   Logs logs;
   const int64_t wall_offset_ns = WallOffset(*program_clock);
-  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns, !options.stepped_clock.empty(), &logs,
-                                          &error))
+  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns,
+                                          !options.stepped_clock.empty(), &logs, &error))
     return Fail(error);
 
   const int64_t now_ns = clock->Now();

@@ -1,10 +1,10 @@
 #include "hil/hil_report.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "firmware/app/whole_file.h"
+#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {
@@ -44,6 +44,13 @@ Json ToJson(const CanLog& log) {
           {"dropped", log.dropped()}};
 }
 
+Json ToJson(const std::vector<FaultConfig>& faults) {
+  Json json = Json::array();
+  for (const FaultConfig& fault : faults)
+    json.push_back({{"kind", NameOf(fault.kind)}, {"arm", fault.arm}, {"at_s", fault.at_s}});
+  return json;
+}
+
 Json ToJson(const std::vector<DrivePower>& drives) {
   Json json = Json::array();
   for (const DrivePower& drive : drives) {
@@ -62,6 +69,8 @@ Json ToJson(const HilArmResult& arm, const CanLog& log) {
           {"settled_s", arm.record ? OrNull(arm.record->settled_s()) : Json(nullptr)},
           {"rms_mm", measured ? Json(arm.record->rms_m() * 1e3) : Json(nullptr)},
           {"max_mm", measured ? Json(arm.record->max_m() * 1e3) : Json(nullptr)},
+          {"max_at_s", measured ? OrNull(arm.record->max_at_s()) : Json(nullptr)},
+          {"beyond_at_s", measured ? OrNull(arm.record->beyond_at_s()) : Json(nullptr)},
           {"samples", arm.record ? arm.record->count() : 0},
           {"bus_name", arm.bus},
           {"bus", ToJson(arm.counters, arm.bus_load)},
@@ -90,9 +99,11 @@ bool WriteHilReport(const HilReport& report, const std::vector<std::unique_ptr<C
       {"epoch_wall_ns", report.epoch_wall_ns},
       {"seconds", report.seconds},
       {"end", NameOf(report.end)},
+      {"faults_taken", ToJson(report.faults_taken)},
       {"arms", arms},
       {"timing",
        {{"pacing_us", Percentiles(report.pacing)},
+        {"latest_at_s", report.latest_at_s},
         {"ticks", report.pacing.count()},
         {"realtime_priority", report.grant.fifo}}},
       {"memory",
@@ -100,11 +111,8 @@ bool WriteHilReport(const HilReport& report, const std::vector<std::unique_ptr<C
         {"page_faults", report.page_faults},
         {"locked", report.grant.memory_locked}}},
   };
-  std::ofstream file(path);
-  file << json.dump(2) << '\n';
-  if (file.flush()) return true;
-  *error = "cannot write " + path + ": " + std::strerror(errno);
-  return false;
+  return WriteWhole(
+      path, [&](std::ostream& file) { file << json.dump(2) << '\n'; }, error);
 }
 
 }  // namespace armada

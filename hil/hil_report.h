@@ -21,6 +21,8 @@ struct HilReport {
   HilEnd end = HilEnd::kDone;
   std::vector<HilArmResult> arms;
   DurationHistogram pacing;
+  double latest_at_s = 0.0;                  ///< fleet time at which pacing was at its maximum
+  std::vector<FaultConfig> faults_taken;     ///< while it ran
   std::optional<uint64_t> heap_allocations;  ///< while it ran; none where they cannot be counted
   int64_t page_faults = 0;                   ///< while it ran
   RealtimeGrant grant;

@@ -26,7 +26,7 @@ int64_t TickBefore(int64_t t_ns, int64_t epoch_ns) {
 HilServer::HilServer(const ScenarioConfig& scenario, uint64_t seed, int64_t epoch_ns,
                      const std::vector<std::unique_ptr<CanBus>>& buses, const std::vector<CanLog*>& logs,
                      HilClock* clock)
-    : epoch_ns_(epoch_ns), clock_(clock) {
+    : epoch_ns_(epoch_ns), clock_(clock), latest_ns_(epoch_ns) {
   if (scenario.leader.kind != LeaderKind::kNone) leader_.emplace(scenario.leader);
   const LeaderPath* leader = leader_ ? &*leader_ : nullptr;
   const int64_t start_ns = TickBefore(clock->Now(), epoch_ns);
@@ -54,7 +54,7 @@ HilEnd HilServer::Run(double seconds) {
     const int64_t now_ns = clock_->Now();
     const int64_t until_ns = std::min(now_ns, end_ns);
     if (next_tick_ns_ <= until_ns) TakeLiveFaults(now_ns);
-    for (; next_tick_ns_ <= until_ns; next_tick_ns_ += kTick_ns) pacing_.Add(now_ns - next_tick_ns_);
+    Pace(now_ns, until_ns);
     for (Arm& arm : arms_) {
       TakeFrames(arm, end_ns);
       AdvanceTo(arm, until_ns);
@@ -65,9 +65,18 @@ HilEnd HilServer::Run(double seconds) {
   return HilEnd::kStopped;
 }
 
+void HilServer::Pace(int64_t now_ns, int64_t until_ns) {
+  for (; next_tick_ns_ <= until_ns; next_tick_ns_ += kTick_ns) {
+    const int64_t late_ns = now_ns - next_tick_ns_;
+    if (1e-3 * static_cast<double>(late_ns) > pacing_.max_us()) latest_ns_ = next_tick_ns_;
+    pacing_.Add(late_ns);
+  }
+}
+
 void HilServer::TakeLiveFaults(int64_t now_ns) {
   if (live_ == nullptr) return;
   while (const auto fault = live_->Take(FleetTime(now_ns))) {
+    faults_taken_.push_back(*fault);
     for (Arm& arm : arms_) {
       if (arm.id == fault->arm) arm.bench.Add(*fault);
     }

@@ -59,6 +59,10 @@ class HilServer {
   double time_s() const;
   /// How late each millisecond of the fleet's clock was served.
   const DurationHistogram& pacing() const { return pacing_; }
+  /// Fleet time of the millisecond that was served the latest, s.
+  double latest_at_s() const { return FleetTime(latest_ns_); }
+  /// Faults that came while it ran.
+  const std::vector<FaultConfig>& faults_taken() const { return faults_taken_; }
 
  private:
   struct Arm {
@@ -78,6 +82,7 @@ class HilServer {
 
   double FleetTime(int64_t t_ns) const { return static_cast<double>(t_ns - epoch_ns_) / 1e9; }
   void TakeLiveFaults(int64_t now_ns);
+  void Pace(int64_t now_ns, int64_t until_ns);
   void TakeFrames(Arm& arm, int64_t end_ns);
   /// Goes through every millisecond on the way.
   void AdvanceTo(Arm& arm, int64_t t_ns);
@@ -93,6 +98,8 @@ class HilServer {
   std::vector<Arm> arms_;
   int64_t next_tick_ns_;
   DurationHistogram pacing_;
+  int64_t latest_ns_ = 0;
+  std::vector<FaultConfig> faults_taken_;
   FrameList out_;
 };
 

@@ -1,6 +1,8 @@
 #include "hil/scenario_file.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -160,11 +162,12 @@ std::optional<ScenarioConfig> ScenarioFromTree(ConfigNode tree, const std::strin
 bool WriteEffective(const ScenarioConfig& scenario, const std::string& directory, std::string* error) {
   const auto write = [&](const char* name, const auto& write_to) {
     const std::string path = (std::filesystem::path(directory) / name).string();
+    errno = 0;
     std::ofstream stream(path);
     stream << "# Written by a run: every value as it was used, overrides applied.\n\n";
     write_to(stream);
     stream.flush();
-    if (!stream) *error = path + ": cannot be written";
+    if (!stream) *error = "cannot write " + path + ": " + std::strerror(errno);
     return static_cast<bool>(stream);
   };
   ScenarioLayout layout{kFleetFile, scenario};

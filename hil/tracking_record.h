@@ -25,12 +25,20 @@ class TrackingRecord {
     }
     if (t_s < window_start_s_) return;
     sum_squares_m2_ += error_m * error_m;
-    max_m_ = error_m > max_m_ ? error_m : max_m_;
+    if (!max_at_s_ || error_m > max_m_) {
+      max_m_ = error_m;
+      max_at_s_ = t_s;
+    }
+    if (error_m >= band_m_ && !beyond_at_s_) beyond_at_s_ = t_s;
     ++count_;
   }
 
   double rms_m() const { return count_ > 0 ? std::sqrt(sum_squares_m2_ / static_cast<double>(count_)) : 0.0; }
   double max_m() const { return max_m_; }
+  /// When it was max_m(); none before the window.
+  std::optional<double> max_at_s() const { return max_at_s_; }
+  /// First time in the window at which the error was not inside the criterion's band.
+  std::optional<double> beyond_at_s() const { return beyond_at_s_; }
   int64_t count() const { return count_; }
   double sum_squares_m2() const { return sum_squares_m2_; }
   /// First time after which the error stayed inside the criterion's band.
@@ -42,6 +50,8 @@ class TrackingRecord {
   std::optional<double> settled_s_;
   double sum_squares_m2_ = 0.0;
   double max_m_ = 0.0;
+  std::optional<double> max_at_s_;
+  std::optional<double> beyond_at_s_;
   int64_t count_ = 0;
 };
 

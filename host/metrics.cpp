@@ -76,25 +76,29 @@ nlohmann::ordered_json ToJson(const ArmMetrics& arm) {
 void RunMetrics::Judge(const CriterionConfig& criterion) {
   double sum_squares_m2 = 0.0;
   int tracking = 0;
-  ok = !arms.empty();
+  misses.clear();
   for (ArmMetrics& arm : arms) {
     arm.standing = criterion.Stands(arm.id);
     if (criterion.Excuses(arm.id)) continue;
     if (arm.standing) {
-      if (!(arm.joint_speed_max_rad_s < criterion.standing_speed_max_rad_s)) ok = false;
+      if (!(arm.joint_speed_max_rad_s < criterion.standing_speed_max_rad_s))
+        misses.push_back({MissKind::kMoved, arm.id});
     } else {
       if (!(arm.max_m <= criterion.diverged_error_m)) arm.diverged = true;
-      if (!(arm.max_m < criterion.error_max_m)) ok = false;
+      if (!(arm.max_m < criterion.error_max_m)) misses.push_back({MissKind::kError, arm.id});
       sum_squares_m2 += arm.rms_m * arm.rms_m;
       ++tracking;
     }
     const bool stands = arm.standing && arm.state == NameOf(ControllerState::kHold);
-    if (arm.diverged || (!arm.faults.empty() && !stands)) ok = false;
+    if (arm.diverged) misses.push_back({MissKind::kDiverged, arm.id});
+    if (!arm.faults.empty() && !stands) misses.push_back({MissKind::kStopped, arm.id});
   }
   fleet_rms_m = tracking == 0 ? 0.0 : std::sqrt(sum_squares_m2 / tracking);
-  if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m)) ok = false;
+  if (criterion.fleet_rms_max_m > 0.0 && !(fleet_rms_m < criterion.fleet_rms_max_m))
+    misses.push_back({MissKind::kFleetRms});
   if (criterion.kind == CriterionKind::kAgreement && !(estimate_spread_m < criterion.agreement_max_m))
-    ok = false;
+    misses.push_back({MissKind::kAgreement});
+  ok = !arms.empty() && misses.empty();
 }
 
 void RunMetrics::CompareWithFloor(const ScenarioConfig& run) {

@@ -64,6 +64,8 @@ struct ArmMetrics {
   std::optional<double> settled_s;
   double rms_m = 0.0;
   double max_m = 0.0;
+  std::optional<double> max_at_s;     ///< when it was max_m
+  std::optional<double> beyond_at_s;  ///< first time in the window beyond criterion.error_max_m
   std::optional<double> floor_rms_m;  ///< unavoidable part of rms_m, where it was computed
   EstimatorRms estimator_rms;
   EstimatorMax estimator_max;
@@ -81,6 +83,21 @@ struct ArmMetrics {
   std::vector<std::string> faults;
 };
 
+/// What a run misses of its scenario's criterion.
+enum class MissKind {
+  kStopped,   ///< an arm has a fault
+  kDiverged,  ///< an arm left every bound
+  kError,     ///< an arm's max_m is not below criterion.error_max_m
+  kMoved,     ///< an arm that was to stand still moved
+  kFleetRms,
+  kAgreement,
+};
+
+struct Miss {
+  MissKind kind;
+  int arm_id = 0;  ///< 0: the fleet
+};
+
 /// Result of a run: metrics.json.
 struct RunMetrics {
   std::string scenario;
@@ -95,9 +112,10 @@ struct RunMetrics {
   double estimate_spread_m = 0.0;  ///< largest distance between two estimates of x in the window
   double fleet_rms_m = 0.0;
   std::optional<double> floor_rms_m;  ///< unavoidable part of fleet_rms_m, where it was computed
+  std::vector<Miss> misses;           ///< of the criterion, in the order of the arms
   bool ok = false;
 
-  /// Fills fleet_rms_m, ok and, of each arm, standing and by its error diverged, from the arms by the
+  /// Fills fleet_rms_m, misses, ok and, of each arm, standing and by its error diverged, from the arms by the
   /// scenario's criterion.
   void Judge(const CriterionConfig& criterion);
   /// Sets fleet and arms beside the floor (host/floor/floor.h) of the scenario that this is the run of, in

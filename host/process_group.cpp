@@ -22,6 +22,7 @@ namespace armada {
 namespace {
 
 constexpr size_t kLogTailLines = 10;
+constexpr off_t kLastWordsBytes = 16 * 1024;  // room that each log has from the start
 constexpr std::chrono::seconds kDestructorGrace{2};
 
 // What the signal handler touches: lock-free, and alive for the whole process.
@@ -170,6 +171,11 @@ bool ProcessGroup::Start(const ProcessSpec& spec, std::string* error) {
   const UniqueFd log_fd(
       open(spec.log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644));
   if (!log_fd.valid()) {
+    *error = SystemError("cannot start " + spec.name + ": its log " + spec.log_path, errno);
+    return false;
+  }
+  // On a disk that gets full a program can still say so. Not every file system can keep room.
+  if (fallocate(log_fd.get(), FALLOC_FL_KEEP_SIZE, 0, kLastWordsBytes) != 0 && errno == ENOSPC) {
     *error = SystemError("cannot start " + spec.name + ": its log " + spec.log_path, errno);
     return false;
   }

@@ -16,7 +16,7 @@ struct ProcessSpec {
   std::string name;                      ///< what messages call it, for example "arm 3"
   std::vector<std::string> argv;         ///< argv[0] is the path of the executable; PATH is not searched
   std::vector<std::string> environment;  ///< "NAME=value": added to this process's, or in place of its value
-  std::string log_path;                  ///< takes standard output and error; emptied first
+  std::string log_path;                  ///< takes standard output and error; emptied first, some room kept
 };
 
 /// How a program ended.

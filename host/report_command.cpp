@@ -9,6 +9,7 @@
 #include "hil/scenario_file.h"
 #include "host/report/recorded_run.h"
 #include "host/report/report.h"
+#include "host/run/run_folder.h"
 #include "host/sim/sim_command.h"
 
 namespace armada {
@@ -50,10 +51,16 @@ int RunReportCommand(const std::string& path) {
   if (std::filesystem::is_directory(path)) sweep /= "sweep.json";
   const bool of_run = std::filesystem::is_directory(path) &&
                       (std::filesystem::exists(path + "/metrics.json") || !std::filesystem::exists(sweep));
+  std::string error;
+  bool in_use = false;
+  const auto folder = of_run ? RunFolder::Take(path, &in_use, &error) : nullptr;
+  if (of_run && folder == nullptr) {
+    std::cerr << "armada report: " << error << '\n';
+    return in_use ? kExitUsage : kExitFailed;
+  }
   if (of_run && std::filesystem::exists(path + "/scenario.toml")) {
     if (const int code = SimulateWithoutSubtasks(path); code != kExitOk) return code;
   }
-  std::string error;
   if (!(of_run ? WriteReport(path, &error) : WriteSweepReport(sweep, &error))) {
     std::cerr << "armada report: " << error << '\n';
     return kExitFailed;

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -111,7 +110,8 @@ int Run(const Options& options) {
   const BoardStart start{options.running ? StartMode::kRunning : StartMode::kMonitor, FleetDigest(*fleet),
                          identity};
   const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, start);
-  const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), clock.get(), fleet->timing, epoch_ns);
+  const auto loop =
+      std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), clock.get(), fleet->timing, epoch_ns);
   if (options.running && !loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
                              ? "stopped before the start"
@@ -121,11 +121,8 @@ int Run(const Options& options) {
   loop->Run(end_ns, &stop_requested);
   if (!stepped) LeaveRealtime();
 
-  if (!options.json.empty()) {
-    std::ofstream file(options.json);
-    WriteLoopReport(*loop, *node, *bus, *link, grant, file);
-    if (!file.flush()) return Fail(options, "cannot write " + options.json);
-  }
+  const auto report = [&](std::ostream& file) { WriteLoopReport(*loop, *node, *bus, *link, grant, file); };
+  if (!options.json.empty() && !WriteWhole(options.json, report, &error)) return Fail(options, error);
   const ControllerState state = loop->final_state();
   if (state == ControllerState::kFault || state == ControllerState::kSafeStop) {
     return Fail(options, std::string("ended in ") + NameOf(state) + ": " + NameOf(node->cause()));

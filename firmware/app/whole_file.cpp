@@ -30,13 +30,15 @@ bool WriteTemporary(const std::string& path, const std::function<void(std::ostre
   file.close();
   if (file) return true;
   *error = "cannot write " + path + ": " + std::strerror(errno);
+  fs::remove(Temporary(path), ignored);
   return false;
 }
 
 // On the disk: a file before it takes the place of the old one, a folder before its new entry is relied on.
-void Sync(const std::string& path) {
+// Some file systems tell only now that there is no room; some cannot do it to a folder.
+bool Sync(const std::string& path) {
   const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.valid()) fsync(file.get());
+  return !file.valid() || fsync(file.get()) == 0 || errno == EINVAL;
 }
 
 }  // namespace
@@ -44,8 +46,12 @@ void Sync(const std::string& path) {
 bool WriteWhole(const std::string& path, const std::function<void(std::ostream&)>& write,
                 std::string* error) {
   if (!WriteTemporary(path, write, error)) return false;
-  Sync(Temporary(path));
   std::error_code code;
+  if (!Sync(Temporary(path))) {
+    *error = "cannot write " + path + ": " + std::strerror(errno);
+    fs::remove(Temporary(path), code);
+    return false;
+  }
   fs::rename(Temporary(path), path, code);
   if (code) {
     *error = "cannot write " + path + ": " + code.message();

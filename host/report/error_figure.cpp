@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -62,7 +64,7 @@ void WriteTable(const std::filesystem::path& path, const RecordedRun& run, doubl
     }
     file << "\n";
   }
-  if (!file.flush()) throw ReportError(path.string() + ": cannot be written");
+  if (!file.flush()) throw ReportError("cannot write " + path.string() + ": " + std::strerror(errno));
 }
 
 std::string SettlingText(const RecordedRun& run) {

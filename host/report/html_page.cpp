@@ -49,6 +49,15 @@ std::string BlameText(const RecordedRun& run, bool ok) {
   return text;
 }
 
+/// What a run in real time says of itself; empty where it says nothing.
+std::string DiagnosisText(const RecordedRun& run) {
+  if (!run.metrics.contains("diagnosis") || run.metrics["diagnosis"].empty()) return "";
+  std::string html = "<ul>";
+  for (const Json& finding : run.metrics["diagnosis"])
+    html += "<li>" + HtmlEscaped(RequireKey(finding, "text", "diagnosis").get<std::string>()) + "</li>";
+  return html + "</ul>";
+}
+
 /// True where the run was measured against its floor.
 bool HasFloor(const RecordedRun& run) {
   return run.metrics.contains("floor_rms_mm");
@@ -64,12 +73,14 @@ std::string FleetText(const RecordedRun& run) {
 
 std::string Verdict(const RecordedRun& run) {
   const bool ok = RequireKey(run.metrics, "ok", "the top level").get<bool>();
-  const std::string how = Top(run, "mode") != "run"          ? "armada sim: virtual time, one process"
+  const std::string diagnosis = DiagnosisText(run);
+  const std::string why = (ok || diagnosis.empty() ? BlameText(run, ok) : "") + diagnosis;
+  const std::string how = Top(run, "mode") != "run"         ? "armada sim: virtual time, one process"
                           : run.metrics.contains("stepped") ? "armada run: stepped time, one process an arm"
                                                             : "armada run: real time, one process an arm";
   std::string html = std::string("<div class=\"verdict") + (ok ? "" : " bad") + "\"><h1>" +
                      Top(run, "scenario") + ", seed " + Top(run, "seed") + ": <b>" + (ok ? "ok" : "NOT ok") +
-                     "</b></h1><p>" + FleetText(run) + "</p>" + BlameText(run, ok) + "</div>\n<dl>";
+                     "</b></h1><p>" + FleetText(run) + "</p>" + why + "</div>\n<dl>";
   const auto fact = [&](const std::string& name, const std::string& value) {
     html += "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>";
   };

@@ -19,6 +19,7 @@ h2 { font-size: 1.2rem; margin: 2.4rem 0 .6rem; }
 .verdict.bad { border-color: var(--bad); background: var(--bad-card); }
 .verdict b { color: var(--good); } .verdict.bad b { color: var(--bad); }
 .verdict p { margin: .3rem 0 0; }
+.verdict ul { margin: .5rem 0 0; padding-left: 1.2rem; }
 dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(7.5rem, 1fr)); gap: .7rem 1.2rem; margin: 1.2rem 0; }
 dl div:first-child { grid-column: span 2; }
 dt { color: var(--soft); font-size: .8rem; } dd { margin: 0; font-weight: 600; overflow-wrap: anywhere; }

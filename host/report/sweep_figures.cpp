@@ -1,7 +1,9 @@
 #include "host/report/sweep_figures.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -88,7 +90,7 @@ void WriteTable(const std::filesystem::path& path, const RecordedSweep& sweep,
     file << '\n';
     for (size_t i = 0; i < figures.size(); ++i) below[i] += figures[i].CountIn(bin);
   }
-  if (!file.flush()) throw ReportError(path.string() + ": cannot be written");
+  if (!file.flush()) throw ReportError("cannot write " + path.string() + ": " + std::strerror(errno));
 }
 
 std::string Curves(const std::string& name, const std::string& share, const std::string& how, int every = 1) {

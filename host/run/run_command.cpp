@@ -19,12 +19,17 @@
 #include "host/arm_table.h"
 #include "host/private_network.h"
 #include "host/process_group.h"
+#include "host/run/board_lateness.h"
 #include "host/run/board_networks.h"
+#include "host/run/heartbeat.h"
 #include "host/run/lcm_log.h"
 #include "host/run/process_faults.h"
 #include "host/run/run_buses.h"
+#include "host/run/run_diagnosis.h"
+#include "host/run/run_folder.h"
 #include "host/run/run_in_vm.h"
 #include "host/run/run_recorder.h"
+#include "host/run/run_reservation.h"
 #include "host/run/run_result.h"
 #include "host/run/stepped_time.h"
 #include "host/run/virtual_can.h"
@@ -75,13 +80,18 @@ class Run {
   bool Prepare(std::string* error);
   bool Execute(std::string* error);
   bool Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string* error);
+  /// Of a run that broke off; empty where it had not begun.
+  std::vector<RunFinding> DiagnoseEnd(const std::string& why) const;
   bool interrupted() const { return interrupted_; }
+  const std::vector<RunFinding>& findings() const { return findings_; }
 
  private:
   bool MakeKey(std::string* error);
   bool WriteInputs(std::string* error);
   bool MakeNetworks(std::string* error);
   bool MakeBoardNetworks(std::string* error);
+  bool EnterOwnNetwork(const std::string& why, const std::vector<std::string>& interfaces,
+                       std::string* error);
   bool StartAll(ProcessGroup* group, std::string* error);
   bool StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error);
   std::map<int, std::string> BoardInterfaces() const;
@@ -105,7 +115,8 @@ class Run {
   const RunOptions& options_;
   ScenarioConfig scenario_;
   fs::path out_;
-  VirtualCan virtual_can_;  // before what uses it: removed last
+  RunReservation reservation_;
+  VirtualCan virtual_can_;                // before what uses it: removed last
   std::unique_ptr<SteppedTime> stepped_;  ///< null: the machine's time
   Clock* clock_;
   FleetKey key_{};
@@ -116,6 +127,9 @@ class Run {
   std::unique_ptr<ProgramControl> control_;
   std::optional<ProcessFaults> faults_;
   std::unique_ptr<LiveFaults> live_faults_;
+  std::optional<Heartbeat> heartbeat_;
+  double ended_s_ = 0.0;  ///< time of the run
+  std::vector<RunFinding> findings_;
   size_t running_ = 0;  ///< programs whose end is awaited
   bool interrupted_ = false;
 };
@@ -179,25 +193,40 @@ bool Run::MakeBoardNetworks(std::string* error) {
   return true;
 }
 
+// Interfaces that are there would be out of reach in a network of our own, and so would other boards.
+bool Run::EnterOwnNetwork(const std::string& why, const std::vector<std::string>& interfaces,
+                          std::string* error) {
+  const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
+  const bool bound = std::any_of(interfaces.begin(), interfaces.end(), VirtualCan::Exists);
+  if (bound) {
+    *error = why + ", and the CAN interfaces are of this network";
+  } else if (url->ttl > 0) {
+    *error =
+        why + ", and link.lcm_url has ttl=" + std::to_string(url->ttl) + ": other boards could not be heard";
+  } else if (EnterPrivateNetwork(error)) {
+    std::cout << why << ": running in a private network namespace\n";
+    return true;
+  } else {
+    *error = why + ", and " + *error;
+  }
+  return false;
+}
+
 bool Run::MakeNetworks(std::string* error) {
   if (options_.namespaces) return MakeBoardNetworks(error);
   const auto url = ParseLcmUrl(scenario_.fleet.link.lcm_url, error);
   if (!url) return false;
   const std::vector<std::string> interfaces = SocketCanInterfaces(scenario_.fleet, options_.hil_buses);
-  if (!HasMulticastRoute()) {
-    // Interfaces that are there would be out of reach in a network of our own, and so would other boards.
-    const bool bound = std::any_of(interfaces.begin(), interfaces.end(), VirtualCan::Exists);
-    if (url->ttl > 0 || bound) {
-      *error =
-          "no multicast route here, and " +
-          (bound ? "the CAN interfaces are of this network"
-                 : "link.lcm_url has ttl=" + std::to_string(url->ttl) + ": other boards could not be heard") +
-          "; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev " +
-          (url->ttl > 0 ? "<interface>" : "lo");
+  const std::vector<std::string> wanted = NamesToReserve(scenario_.fleet, options_.hil_buses);
+  if (std::string taken; !HasMulticastRoute()) {
+    if (!EnterOwnNetwork("no multicast route here", interfaces, error)) {
+      error->append("; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev ");
+      error->append(url->ttl > 0 ? "<interface>" : "lo");
       return false;
     }
-    if (!EnterPrivateNetwork(error)) return false;
-    std::cout << "no multicast route here: running in a private network namespace\n";
+  } else if (!reservation_.Take(wanted, &taken) && !EnterOwnNetwork(taken, interfaces, error)) {
+    error->append("; wait for its end, or give this run other buses and another link.lcm_url");
+    return false;
   }
   if (!virtual_can_.Provide(interfaces, error)) return false;
   if (!interfaces.empty()) PrintCanInterfaces(interfaces, virtual_can_.made(), std::cout);
@@ -249,8 +278,14 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
     if (!StartBoard(arm.id, false, group, error)) return false;
   }
   if (scenario_.leader.kind != LeaderKind::kNone) {
-    std::vector<std::string> leader = {Program("armada-leader"), In("scenario.toml"), "--epoch-ns", epoch,
-                                       "--seconds",              Seconds(),           "--state",    In("state")};
+    std::vector<std::string> leader = {Program("armada-leader"),
+                                       In("scenario.toml"),
+                                       "--epoch-ns",
+                                       epoch,
+                                       "--seconds",
+                                       Seconds(),
+                                       "--state",
+                                       In("state")};
     const auto of_time = ClockArguments(ProcessFaults::kLeaderProcess);
     leader.insert(leader.end(), of_time.begin(), of_time.end());
     if (!Start(group, ProcessFaults::kLeaderProcess, std::move(leader), error)) return false;
@@ -403,7 +438,10 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
 
 bool Run::Execute(std::string* error) {
   ProcessGroup group;
+  if (!stepped_) heartbeat_.emplace(static_cast<int64_t>(TolerableLateness_s(scenario_.fleet.timing) * 1e9));
   const bool done = StartAll(&group, error) && Watch(&group, error);
+  if (heartbeat_) heartbeat_->Stop();
+  ended_s_ = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   if (faults_) faults_->KillStopped(control_.get());
   if (stepped_) stepped_->Release();
   group.StopAll(milliseconds(2000));
@@ -417,8 +455,9 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
   }
   if (lcm_log_ && !lcm_log_->Close(error)) return false;
   if (stepped_ && stepped_->lost() > 0) {
-    *error = std::to_string(stepped_->lost()) +
-             " datagrams were sent and never arrived: this machine's network cannot carry a run in stepped time";
+    *error =
+        std::to_string(stepped_->lost()) +
+        " datagrams were sent and never arrived: this machine's network cannot carry a run in stepped time";
     return false;
   }
   if (!recorder_->WriteTraces(out_.string(), !stepped_, error)) return false;
@@ -430,8 +469,23 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
                           {"stepped_s", stepped_->stepped_s()},
                           {"timing", {{"real_s", stepped_->real_s()}, {"datagrams_late", stepped_->late()}}}};
   }
+  RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
+                                        heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
+  evidence.metrics = metrics;
+  findings_ = Diagnose(evidence);
+  (*json)["diagnosis"] = ToJson(findings_);
   if (!WriteJson(*json, In("metrics.json"), error)) return false;
   return options_.json.empty() || WriteJson(*json, options_.json, error);
+}
+
+std::vector<RunFinding> Run::DiagnoseEnd(const std::string& why) const {
+  if (recorder_ == nullptr || interrupted_) return {};
+  RunEvidence evidence =
+      GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, faults_ ? &*faults_ : nullptr,
+                     heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
+  evidence.broke_off = why;
+  evidence.broke_off_s = ended_s_;
+  return Diagnose(evidence);
 }
 
 // What is wrong with the options of time; empty when nothing is.
@@ -451,7 +505,8 @@ std::string CheckTime(const RunOptions& options, const ScenarioConfig& scenario)
     return "--time stepped: link.lcm_url has ttl=" + std::to_string(url->ttl) + ", other boards do not wait";
   for (const FaultConfig& fault : scenario.faults) {
     if (fault.kind == FaultKind::kCpuHog)
-      std::cerr << "armada run: fault cpu_hog at " << fault.at_s << " s is left out: computing takes no stepped time\n";
+      std::cerr << "armada run: fault cpu_hog at " << fault.at_s
+                << " s is left out: computing takes no stepped time\n";
   }
   return error;
 }
@@ -478,7 +533,14 @@ int RunRunCommand(const RunOptions& options) {
     return kExitUsage;
   }
   std::string error;
+  bool in_use = false;
+  const auto folder = RunFolder::Take(options.out, &in_use, &error);
+  if (folder == nullptr) {
+    const int code = Fail(error);
+    return in_use ? kExitUsage : code;
+  }
   if (options.bus == "vm") {
+    folder->KeepAcrossExec();
     return PrepareFolder(options.out, &error) ? RunInVm(options, *scenario) : Fail(error);
   }
   std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
@@ -488,17 +550,19 @@ int RunRunCommand(const RunOptions& options) {
   nlohmann::ordered_json json;
   if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {
     const int code = Fail(error);
+    PrintFindings(run.DiagnoseEnd(error), false, std::cerr);
     return run.interrupted() ? kExitInterrupted : code;
   }
   PrintArmTable(metrics, std::cout);
   if (options.time == "stepped") {
     const double stepped_s = json.at("stepped").at("stepped_s").get<double>();
     const double real_s = json.at("stepped").at("timing").at("real_s").get<double>();
-    std::printf("stepped time: %.1f s in %.1f s, %.1f times real time; computing took none of it\n", stepped_s,
-                real_s, stepped_s / real_s);
+    std::printf("stepped time: %.1f s in %.1f s, %.1f times real time; computing took none of it\n",
+                stepped_s, real_s, stepped_s / real_s);
   } else {
     PrintProcessTable(json, std::cout);
   }
+  PrintFindings(run.findings(), metrics.ok, std::cout);
   return metrics.ok ? kExitOk : kExitFailed;
 }
 

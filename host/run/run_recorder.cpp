@@ -2,8 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 #include "firmware/link/channels.h"
@@ -176,7 +178,7 @@ bool RunRecorder::WriteTraces(const std::string& directory, bool with_timing, st
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> timing(
       with_timing ? std::fopen((directory + "/timing.csv").c_str(), "w") : nullptr, std::fclose);
   if (with_timing && !timing) {
-    *error = "cannot write " + directory + "/timing.csv";
+    *error = "cannot write " + directory + "/timing.csv: " + std::strerror(errno);
     return false;
   }
   if (timing) std::fputs("arm,t_s,wakeup_lateness_us,compute_us,sample_to_torque_us\n", timing.get());
@@ -214,9 +216,13 @@ bool RunRecorder::WriteTraces(const std::string& directory, bool with_timing, st
                    tick.wakeup_lateness_us, tick.compute_us, tick.sample_to_torque_us);
     }
   }
-  const bool written = trace.Close() && (!timing || std::fflush(timing.get()) == 0);
-  if (!written) *error = "the traces in " + directory + " could not be written completely";
-  return written;
+  if (!trace.Close()) {
+    *error = trace.error();
+    return false;
+  }
+  if (!timing || (std::fflush(timing.get()) == 0 && std::ferror(timing.get()) == 0)) return true;
+  *error = "cannot write " + directory + "/timing.csv: " + std::strerror(errno);
+  return false;
 }
 
 }  // namespace armada

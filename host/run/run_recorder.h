@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ class RunRecorder {
 
   void OnMessage(const LcmMessage& message);
 
+  /// Every tick of an arm that was heard, in order.
+  std::span<const telemetry_t> Ticks(size_t index) const { return arms_[index].telemetry; }
   /// Newest tick of each arm, for the progress line; none before its first.
   const std::optional<telemetry_t>& Latest(size_t index) const { return arms_[index].latest; }
   /// True when every arm of the fleet has been heard.

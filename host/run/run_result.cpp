@@ -32,9 +32,17 @@ void TakeTracking(const Json& of_arm, const TrackingRecord& seen, ArmMetrics* ar
     arm->settled_s = seen.settled_s();
     arm->rms_m = seen.rms_m();
     arm->max_m = seen.max_m();
+    arm->max_at_s = seen.max_at_s();
+    arm->beyond_at_s = seen.beyond_at_s();
     return;
   }
-  if (!of_arm.at("settled_s").is_null()) arm->settled_s = of_arm.at("settled_s").get<double>();
+  const auto time = [&](const char* key) {
+    const Json& at_s = of_arm.at(key);
+    return at_s.is_null() ? std::nullopt : std::optional(at_s.get<double>());
+  };
+  arm->settled_s = time("settled_s");
+  arm->max_at_s = time("max_at_s");
+  arm->beyond_at_s = time("beyond_at_s");
   arm->rms_m = 1e-3 * of_arm.at("rms_mm").get<double>();
   arm->max_m = 1e-3 * of_arm.at("max_mm").get<double>();
 }

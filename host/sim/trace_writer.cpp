@@ -24,7 +24,16 @@ TraceWriter::File TraceWriter::Create(const std::string& path) {
   return file;
 }
 
-TraceWriter::TraceWriter(const std::string& directory, const FleetConfig& fleet) {
+// After a failed write errno is the kernel's; a later one would be of something else.
+void TraceWriter::Note(std::FILE* file, const std::string& path) {
+  if (std::ferror(file) != 0 && error_.empty()) error_ = "cannot write " + path + ": " + std::strerror(errno);
+}
+
+std::string TraceWriter::PathOf(size_t index) const {
+  return directory_ + "/arm_" + std::to_string(ids_[index]) + ".csv";
+}
+
+TraceWriter::TraceWriter(const std::string& directory, const FleetConfig& fleet) : directory_(directory) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (code) {
@@ -32,8 +41,10 @@ TraceWriter::TraceWriter(const std::string& directory, const FleetConfig& fleet)
     return;
   }
   leader_ = Create(directory + "/leader.csv");
-  for (const ArmEntry& arm : fleet.arms)
-    arms_.push_back(Create(directory + "/arm_" + std::to_string(arm.id) + ".csv"));
+  for (const ArmEntry& arm : fleet.arms) {
+    ids_.push_back(arm.id);
+    arms_.push_back(Create(PathOf(ids_.size() - 1)));
+  }
   if (!ok()) return;
 
   constexpr int m = PlanarArm::kTaskDim;
@@ -66,6 +77,7 @@ void TraceWriter::Leader(double t_s, const Zeta& zeta) {
   Put(leader_.get(), zeta.v_m_s);
   Put(leader_.get(), zeta.a_m_s2);
   std::fputc('\n', leader_.get());
+  Note(leader_.get(), directory_ + "/leader.csv");
 }
 
 void TraceWriter::Arm(size_t index, const TraceRow& row) {
@@ -83,18 +95,19 @@ void TraceWriter::Arm(size_t index, const TraceRow& row) {
                row.subtask_error_rad_s, row.synced ? 1 : 0);
   if (has_obstacles_[index]) std::fprintf(file, ",%.9g", row.clearance_m);
   std::fputc('\n', file);
+  Note(file, PathOf(index));
 }
 
 bool TraceWriter::Close() {
-  bool written = ok();
-  const auto finish = [&](File& file) {
-    if (file && std::fflush(file.get()) != 0) written = false;
+  const auto finish = [&](File& file, const std::string& path) {
+    if (!file) return;
+    std::fflush(file.get());
+    Note(file.get(), path);
     file.reset();
   };
-  finish(leader_);
-  for (File& file : arms_) finish(file);
-  if (!written && error_.empty()) error_ = "the trace could not be written completely";
-  return written;
+  finish(leader_, directory_ + "/leader.csv");
+  for (size_t i = 0; i < arms_.size(); ++i) finish(arms_[i], PathOf(i));
+  return ok();
 }
 
 }  // namespace armada

@@ -45,9 +45,14 @@ class TraceWriter {
   };
   using File = std::unique_ptr<std::FILE, CloseFile>;
   File Create(const std::string& path);
+  /// Keeps the first thing that went wrong with a file.
+  void Note(std::FILE* file, const std::string& path);
+  std::string PathOf(size_t index) const;
 
+  std::string directory_;
   std::string error_;
   File leader_;
+  std::vector<int> ids_;  ///< of the arms
   std::vector<File> arms_;
   std::vector<bool> has_obstacles_;  ///< by arm
 };

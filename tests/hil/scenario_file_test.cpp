@@ -327,7 +327,7 @@ TEST(Scenario, AMistakeInTheFleetFileHasTheFleetFilesLine) {
 TEST(Scenario, AnEffectiveFileThatCannotBeWrittenIsNamed) {
   std::string error;
   EXPECT_FALSE(WriteEffective(Load("paper"), "/no/such/directory", &error));
-  EXPECT_EQ(error, "/no/such/directory/fleet.toml: cannot be written");
+  EXPECT_EQ(error, "cannot write /no/such/directory/fleet.toml: No such file or directory");
 }
 
 TEST(ParameterReference, IsTheOneInTheDocs) {

@@ -12,8 +12,10 @@
 
 #include "host/report/axis_range.h"
 #include "host/report/csv_table.h"
+#include "host/report/html_page.h"
 #include "host/report/number_text.h"
 #include "host/report/process_table.h"
+#include "host/report/recorded_run.h"
 #include "host/report/run_facts.h"
 #include "tests/host/report_golden/sample_run.h"
 #include "tests/support/temp_dir.h"
@@ -255,6 +257,20 @@ TEST(ReportOfASimulation, NeedsNeitherTwinNorTiming) {
   EXPECT_NE(ReadText(dir.path() / "report.html").find("no twin run without subtasks"), std::string::npos);
 }
 
+TEST(ReportOfARun, SaysWhyItIsNotOkInTheWordsOfTheRun) {
+  TempDir dir;
+  WriteSample(dir.path());
+  Json metrics = SampleMetrics();
+  metrics["diagnosis"] = {{{"kind", "stall"}, {"text", "the machine stood <still>"}},
+                          {{"kind", "stopped"}, {"text", "arm 4 went to FAULT"}}};
+  WriteMetrics(dir.path(), metrics);
+  const std::string page = HtmlPage(LoadRecordedRun(dir.path()), {}, dir.path() / "report");
+  const std::string verdict = page.substr(0, page.find("<h2>Arms"));
+  EXPECT_NE(verdict.find("<ul><li>the machine stood &lt;still&gt;</li><li>arm 4 went to FAULT</li></ul>"),
+            std::string::npos);
+  EXPECT_EQ(verdict.find("class=\"alarm\""), std::string::npos) << "said twice";
+}
+
 /// A sample with one thing wrong, and what the report says about it.
 class ReportRefuses : public testing::Test {
  protected:
@@ -349,6 +365,16 @@ TEST_F(ReportRefuses, AFigureThatGnuplotFailsOnAndKeepsNoHalfOfIt) {
   EXPECT_NE(error.find("line 7: no such terminal"), std::string::npos) << error;
   EXPECT_FALSE(fs::exists(dir() / "report" / "estimates.svg"));
   EXPECT_TRUE(fs::exists(dir() / "report" / "estimates.gp"));
+}
+
+TEST_F(ReportRefuses, AFigureOfWhichGnuplotWroteHalfWithoutAWord) {
+  fs::create_directory(dir() / "bin");
+  WriteText(dir() / "bin" / "gnuplot",
+            "#!/bin/sh\necho '<svg></svg>' > estimates.svg\necho half > estimates.png\n");
+  fs::permissions(dir() / "bin" / "gnuplot", fs::perms::owner_all);
+  const ScopedPath path((dir() / "bin").string() + ":/usr/bin:/bin");
+  EXPECT_EQ(Error(), "gnuplot cannot write " + (dir() / "report" / "estimates.png").string());
+  EXPECT_FALSE(fs::exists(dir() / "report" / "estimates.png"));
 }
 
 TEST(ProcessTable, HasTheSumsOfAListSoThatItStaysNarrow) {

@@ -35,7 +35,7 @@ mkdir -p build/release/bin
 cat >build/release/bin/armada <<'PROGRAM'
 #!/bin/bash
 echo "armada $*"
-[[ $1 != run ]] || exit "$(cat run_exit_code)"
+[[ $1 != run ]] || { mkdir -p out/demo; : >out/demo/metrics.json; exit "$(cat run_exit_code)"; }
 PROGRAM
 chmod +x build/release/bin/armada
 END
@@ -172,6 +172,21 @@ given '' 0 1
 when demo
 check 'a demo that misses its criterion fails' test "$code" = 1
 check 'but is reported' says 'armada report out/demo'
+
+given '' 0 1
+sed -i 's/: >out.demo.metrics.json;//' bin/cmake
+when demo
+check 'a demo that broke off fails' test "$code" = 1
+check 'and there is nothing to report' silent_about 'armada report'
+
+given '' 0 0
+mkdir -p project/build/release
+flock project/build/release/.lock sleep 1 &
+while flock --nonblock project/build/release/.lock true; do :; done
+when build
+check 'a build waits for another one in its folder' says 'another ./run builds in build/release; waiting'
+check 'and then succeeds' test "$code" = 0
+wait
 
 given '' 0 78
 when demo

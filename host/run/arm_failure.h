@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "host/run/run_evidence.h"
+#include "host/run/run_finding.h"
+
+namespace armada {
+
+/// So long before a failure shows, what was late or lost is of that moment.
+inline constexpr double kMoment_s = 1.0;
+
+/// What an arm misses of the criterion.
+struct ArmFailure {
+  RunFinding finding;    ///< what, when, and what was late or lost on its board at that moment
+  bool in_time = false;  ///< nothing was late or lost there up to then
+};
+
+/// None of an arm that misses nothing. Of a run that broke off: whether it has stopped or was never heard.
+std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index);
+
+/// What the arm's board lost in the whole run; none when it lost nothing, or has left no report.
+std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index);
+
+}  // namespace armada

@@ -1,0 +1,123 @@
+#include "host/run/outside_findings.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "hil/fault_meaning.h"
+#include "hil/scenario_names.h"
+#include "host/run/board_lateness.h"
+
+namespace armada {
+namespace {
+
+double Length_s(const Stall& stall) {
+  return 1e-9 * static_cast<double>(stall.end_ns - stall.begin_ns);
+}
+
+// A tick well within a stall is of a board that went on.
+bool BoardsWentOn(const RunEvidence& evidence, const Stall& stall) {
+  const auto margin_ns = static_cast<int64_t>(2e9 * evidence.scenario->fleet.timing.period_s);
+  return std::any_of(evidence.arms.begin(), evidence.arms.end(), [&](const RunEvidence::Arm& arm) {
+    return std::any_of(arm.ticks.begin(), arm.ticks.end(), [&](const telemetry_t& tick) {
+      return tick.stamp_ns > stall.begin_ns + margin_ns && tick.stamp_ns < stall.end_ns - margin_ns;
+    });
+  });
+}
+
+std::string StallText(const RunEvidence& evidence, const Stall& stall) {
+  const bool all = stall.processors == evidence.processors;
+  const bool went_on = all && BoardsWentOn(evidence, stall);
+  std::string text;
+  if (went_on) {
+    text = "`armada run` stood still, while boards went on,";
+  } else if (all) {
+    text = "the machine stood still (or every program of the run was stopped)";
+  } else if (stall.processors == 1) {
+    text = "processor " + std::to_string(stall.processor) + " of the machine stood still";
+  } else {
+    text = std::to_string(stall.processors) + " of " + std::to_string(evidence.processors) +
+           " processors of the machine stood still";
+  }
+  char when[64];
+  std::snprintf(when, sizeof when, " for %.3f s at ", Length_s(stall));
+  text += when + TimeText(evidence.TimeOf(stall.begin_ns));
+  if (!evidence.heartbeat_is_foremost) text += "; the heartbeat had no priority: it may have been load";
+  return text;
+}
+
+RunFinding FaultFinding(int arm_id, double at_s, const std::string& what) {
+  return {"fault", arm_id, at_s, what + " at " + TimeText(at_s) + ", as was ordered"};
+}
+
+std::string OfArm(int arm_id) {
+  return arm_id == 0 ? "" : ", arm " + std::to_string(arm_id) + ",";
+}
+
+}  // namespace
+
+std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_s) {
+  std::vector<RunFinding> findings;
+  for (const FaultConfig& fault : evidence.scenario->faults) {
+    const FaultMaker maker = MeaningOf(fault.kind).maker;
+    const bool hog = fault.kind == FaultKind::kCpuHog && evidence.real_time;
+    if (maker != FaultMaker::kEmulation && !hog) continue;
+    findings.push_back(
+        FaultFinding(fault.arm, fault.at_s, "fault " + std::string(NameOf(fault.kind)) + OfArm(fault.arm)));
+  }
+  if (evidence.hil.is_object() && evidence.hil.contains("faults_taken")) {
+    for (const auto& fault : evidence.hil.at("faults_taken")) {
+      const int arm_id = fault.at("arm").get<int>();
+      findings.push_back(FaultFinding(arm_id, fault.at("at_s").get<double>(),
+                                      "fault " + fault.at("kind").get<std::string>() + OfArm(arm_id)));
+    }
+  }
+  for (const ProcessFaults::Made& made : evidence.faults_made)
+    findings.push_back(FaultFinding(0, made.made_s, made.to + ": " + made.what));
+  std::erase_if(findings, [&](const RunFinding& finding) { return *finding.at_s > until_s; });
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const RunFinding& a, const RunFinding& b) { return *a.at_s < *b.at_s; });
+  return findings;
+}
+
+std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<Stall> stalls, size_t most) {
+  std::stable_sort(stalls.begin(), stalls.end(),
+                   [](const Stall& a, const Stall& b) { return Length_s(a) > Length_s(b); });
+  const auto listed = stalls.begin() + static_cast<std::ptrdiff_t>(std::min(most, stalls.size()));
+  std::sort(stalls.begin(), listed, [](const Stall& a, const Stall& b) { return a.begin_ns < b.begin_ns; });
+  std::vector<RunFinding> findings;
+  for (auto stall = stalls.begin(); stall != listed; ++stall)
+    findings.push_back({"stall", 0, evidence.TimeOf(stall->begin_ns), StallText(evidence, *stall)});
+  if (listed != stalls.end()) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%zu further stalls of at most %.3f s",
+                  static_cast<size_t>(stalls.end() - listed), Length_s(*listed));
+    findings.push_back({"stall", 0, std::nullopt, text});
+  }
+  return findings;
+}
+
+std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
+  std::vector<RunFinding> findings;
+  bool has_priority = true;
+  const auto look = [&](const RunEvidence::Json& program) {
+    if (program.is_object() && !program.at("timing").at("realtime_priority").get<bool>())
+      has_priority = false;
+  };
+  look(evidence.hil);
+  for (const RunEvidence::Arm& arm : evidence.arms) look(arm.board);
+  if (evidence.hil.is_object()) {
+    const RunEvidence::Json& timing = evidence.hil.at("timing");
+    const double late_s = 1e-6 * timing.at("pacing_us").at("max").get<double>();
+    const double at_s = timing.at("latest_at_s").get<double>();
+    if (late_s >= TolerableLateness_s(evidence.scenario->fleet.timing)) {
+      char text[96];
+      std::snprintf(text, sizeof text, "the emulation (armada-hil) was %.1f ms late at ", late_s * 1e3);
+      findings.push_back({"emulation", 0, at_s, text + TimeText(at_s)});
+    }
+  }
+  if (!has_priority && evidence.real_time)
+    findings.push_back({"priority", 0, std::nullopt, "boards or emulation had no real-time priority"});
+  return findings;
+}
+
+}  // namespace armada

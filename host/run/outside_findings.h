@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "host/run/run_evidence.h"
+#include "host/run/run_finding.h"
+
+namespace armada {
+
+/// Faults that the scenario or somebody ordered, up to `until_s`.
+std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_s);
+
+/// When the machine stood still: the `most` longest of these times in order, then one finding of the rest.
+std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<Stall> stalls, size_t most);
+
+/// Whether the emulation was late, and whether the programs had no real-time priority.
+std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence);
+
+}  // namespace armada

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "firmware/unique_fd.h"
+
+namespace armada {
+
+/// A folder that one run, or one report of a run, has to itself for as long as the object lives: it holds a
+/// lock on the file run.lock, which has its process id. The file goes with the object, and so do the pipes
+/// of `armada fault`, also when this process is killed.
+class RunFolder {
+ public:
+  static constexpr const char* kLock = "run.lock";
+
+  /// Makes the folder where there is none. Null when somebody else has it, then with `in_use`, or when it
+  /// cannot be written, with the reason in `error`; nothing in it has been touched then.
+  static std::unique_ptr<RunFolder> Take(const std::string& directory, bool* in_use, std::string* error);
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+  ~RunFolder();
+
+  /// A program that takes the place of this one (execve) keeps the folder.
+  void KeepAcrossExec();
+
+ private:
+  RunFolder(UniqueFd lock, FILE* janitor) : lock_(std::move(lock)), janitor_(janitor) {}
+
+  UniqueFd lock_;
+  FILE* janitor_;
+};
+
+}  // namespace armada
