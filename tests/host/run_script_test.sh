@@ -27,9 +27,11 @@ if [[ $* == *install* && -s $box/failures ]]; then
   exit 1
 fi
 END
-# Builds programs that note their arguments; `armada run` exits as the file `run_exit_code` says.
+# Builds programs that note their arguments; `armada run` exits as the file `run_exit_code` says. Makes the tests that the
+# file `tests` lists for ctest, which is the real one.
 stand_in cmake <<'END'
 echo "$*" >>"$box/cmake_calls"
+[[ $1 != --preset ]] || { mkdir -p "build/$2"; cp "$box/tests" "build/$2/CTestTestfile.cmake"; }
 [[ ! -f $box/build_is_broken ]] || { echo '[1/2] Building'; echo 'a.cpp:1: error: broken'; exit 1; }
 mkdir -p build/release/bin
 cat >build/release/bin/armada <<'PROGRAM'
@@ -51,6 +53,7 @@ given() {
   seq "$2" >failures
   echo "$3" >project/run_exit_code
   : >apt_calls
+  : >tests
 }
 
 # when ARGUMENT...: runs the script without input, from another folder; leaves $code and the file `output`.
@@ -69,6 +72,7 @@ check() { # DESCRIPTION CONDITION...
 }
 says() { grep -qF -- "$1" output; }
 silent_about() { ! says "$1"; }
+ends_with() { tail -n 2 output | grep -qE "$1"; }
 
 given '' 0 0
 when dance
@@ -96,10 +100,14 @@ check 'and calls no apt-get when nothing is missing' test ! -s apt_calls
 check 'and makes the programs, not the tests' \
   grep -qx -- '--build --preset release --target bin/armada bin/armada-arm bin/armada-leader bin/armada-hil' cmake_calls
 
+check 'and tells the time of the stage' grep -qE '^build release +[0-9]+\.[0-9] s' output
+check 'and of all' ends_with '^in all +[0-9]+\.[0-9] s'
+
 given 'cmake gnuplot-nox' 0 0
 when build
 check 'a missing package is named with its reason' says 'cmake                configures the build'
 check 'packages that are there are not' silent_about 'ninja-build'
+check 'and its time is told' grep -qE '^packages +[0-9]+\.[0-9] s' output
 check 'only missing ones are installed, with no questions and no extras' grep -qx \
   'noninteractive -q -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends cmake gnuplot-nox' apt_calls
 check 'test tools are not needed to build' silent_about 'clang-tidy'
@@ -164,6 +172,40 @@ check 'in guests it gets the kernels first' test "$(cat vm_calls)" = "$(printf '
 given '' 0 1
 when campaign
 check 'a campaign with a finding is a failure' test "$code" = 1
+given '' 0 0
+mkdir -p project/tests/core
+touch project/tests/core/CMakeLists.txt
+cat >tests <<'END'
+add_test(core.Supervisor.Stops true)
+add_test(core.Supervisor.Waits true)
+add_test(host.Report.IsWritten true)
+END
+builds() { [[ $(grep -o -- '--target .*' cmake_calls | sort -u) == "--target $1" ]]; }
+when test -R core
+check 'tests of a folder pass, in both builds' test "$(tail -n 1 output)" = 'tests: 4 passed, 0 failed'
+check 'and nothing else is built' builds tests/core/all
+check 'and the time of all stands before' ends_with '^in all +[0-9]+\.[0-9] s'
+rm cmake_calls
+when test -R core.Supervisor.Waits
+check 'one test of a folder alone' test "$(tail -n 1 output)" = 'tests: 2 passed, 0 failed'
+check 'builds that folder only, too' builds tests/core/all
+for regex in Report 'core|host' cor; do
+  rm cmake_calls
+  when test -R "$regex"
+  check "$regex is no folder: all is built" builds all
+done
+check 'and what matches is run' test "$(tail -n 1 output)" = 'tests: 4 passed, 0 failed'
+when test -R nothing
+check 'a pattern without a test fails' test "$code" = 1
+echo 'add_test(core.Supervisor.Breaks false)' >>tests
+when test -R core
+check 'a test that fails is a failure' test "$code" = 1
+check 'and is named' says 'core.Supervisor.Breaks'
+check 'and counted' test "$(tail -n 1 output)" = 'tests: 2 passed, 1 failed'
+given '' 0 0
+when fuzz --seconds 0
+check 'a fuzzer runs for some time' test "$code" = 2
+
 given 'qemu-system-x86' 0 0
 when hil
 check 'hil installs the virtual machine' says "qemu-system-x86      runs Debian's kernels"
