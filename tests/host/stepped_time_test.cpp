@@ -178,6 +178,22 @@ TEST_F(SteppedTimeTest, AProgramThatStartsAnewJoinsAtThatTime) {
             "10.000 answered 0 10.000\n5.000 answered 1 5.000\n15.000 answered 2 15.000\n");
 }
 
+TEST_F(SteppedTimeTest, OneMayStartAnewWhileAnotherThatWasKilledHasNotEnded) {
+  Begin();
+  Start("answerer", {"answer", "50"});
+  Start("speaker", {"speak", "10", "3"});
+  Await();
+  PassUntil(15);
+  time_->Kill(&group_, "answerer");
+  time_->Pass(&group_, {}, time_->Now() + kMs);
+  time_->Kill(&group_, "speaker");
+  Start("answerer", {"answer", "50"});
+  Await();
+  const auto ended = time_->Pass(&group_, {}, time_->Now() + kMs);
+  ASSERT_TRUE(ended.has_value());
+  EXPECT_EQ(ended->name, "speaker");
+}
+
 TEST_F(SteppedTimeTest, WhoDiesIsNamedWithinASecond) {
   Begin();
   Start("speaker", {"speak", "10", "100"});
