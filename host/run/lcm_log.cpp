@@ -12,7 +12,8 @@ constexpr size_t kHeader = 28;
 
 template <class Number>
 uint8_t* PutBe(Number number, uint8_t* to) {
-  for (size_t i = 0; i < sizeof number; ++i) to[i] = static_cast<uint8_t>(number >> 8 * (sizeof number - 1 - i));
+  for (size_t i = 0; i < sizeof number; ++i)
+    to[i] = static_cast<uint8_t>(number >> 8 * (sizeof number - 1 - i));
   return to + sizeof number;
 }
 

@@ -107,7 +107,8 @@ bool ProcessFaults::MakeDue(ProgramControl* control,
                             std::string* error) {
   const auto is_due = [&] { return Next() <= clock_->Now(); };
   if (!is_due()) return true;
-  std::optional<Foremost> foremost;  // until the last: of two close together the second has no lead of its own
+  std::optional<Foremost>
+      foremost;  // until the last: of two close together the second has no lead of its own
   if (lead_ns_ > 0) foremost.emplace();
   do {
     const Step step = steps_[next_++];

@@ -16,9 +16,9 @@
 
 namespace armada {
 
-/// The faults of a run that are made from outside of the programs: one is killed, stopped, started anew, a CAN
-/// interface is set down, a processor kept busy; the last not in stepped time, where computing takes none. Used
-/// by the main thread, like the ProcessGroup.
+/// The faults of a run that are made from outside of the programs: one is killed, stopped, started anew, a
+/// CAN interface is set down, a processor kept busy; the last not in stepped time, where computing takes
+/// none. Used by the main thread, like the ProcessGroup.
 class ProcessFaults {
  public:
   /// What was done, and when.
@@ -34,8 +34,8 @@ class ProcessFaults {
   static constexpr const char* kLeaderProcess = "leader";
 
   /// `interfaces`: CAN interfaces that are the board's alone, by arm; another one is also the emulation's
-  /// end, and stays up. What would be over after `end_ns` never is. `clock`, stepped or the machine's, outlives
-  /// the object.
+  /// end, and stays up. What would be over after `end_ns` never is. `clock`, stepped or the machine's,
+  /// outlives the object.
   ProcessFaults(const std::vector<FaultConfig>& faults, const std::map<int, std::string>& interfaces,
                 Clock* clock, bool stepped, int64_t epoch_ns, int64_t end_ns);
   ProcessFaults(const ProcessFaults&) = delete;

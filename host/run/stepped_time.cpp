@@ -19,12 +19,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int64_t kStart_ns = 1000 * kNsPerS;                    // as of a machine that is up for a while
-constexpr int64_t kWallAtStart_ns = 1'767'225'600 * kNsPerS;     // 2026-01-01 00:00:00 UTC: the same in each run
-constexpr int64_t kTold_ns = 900'000'000;                        // of one turn, on the machine's clock
-constexpr int64_t kHung_cpu_ns = 900'000'000;                    // of one turn, on its own processor time
-constexpr int64_t kHung_ns = 30 * kNsPerS;                       // of one turn, neither stopped nor computing
-constexpr int64_t kPatience_ns = 60 * kNsPerS;                   // for a program to come up
+constexpr int64_t kStart_ns = 1000 * kNsPerS;                 // as of a machine that is up for a while
+constexpr int64_t kWallAtStart_ns = 1'767'225'600 * kNsPerS;  // 2026-01-01 00:00:00 UTC: the same in each run
+constexpr int64_t kTold_ns = 900'000'000;                     // of one turn, on the machine's clock
+constexpr int64_t kHung_cpu_ns = 900'000'000;                 // of one turn, on its own processor time
+constexpr int64_t kHung_ns = 30 * kNsPerS;                    // of one turn, neither stopped nor computing
+constexpr int64_t kPatience_ns = 60 * kNsPerS;                // for a program to come up
 
 int64_t ProcessorTime(pid_t pid) {
   clockid_t clock{};
@@ -91,8 +91,8 @@ std::vector<std::string> SteppedTime::ArgumentsFor(const std::string& program) {
   slot->rung = false;
   const auto number = slot - page()->slot.data();
   running_[static_cast<size_t>(number - 1)] = true;
-  return {"--stepped-clock", "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_.get()) + ":" +
-                                 std::to_string(number)};
+  return {"--stepped-clock", "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_.get()) +
+                                 ":" + std::to_string(number)};
 }
 
 bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
@@ -127,7 +127,8 @@ bool SteppedTime::AwaitsAnEnd() const {
 
 // Ends are taken note of before time goes on: when a program has left is then the same in each run, and time
 // does not run away while the last ones end.
-std::optional<ProcessExit> SteppedTime::Pass(ProcessGroup* group, std::span<pollfd> inputs, int64_t until_ns) {
+std::optional<ProcessExit> SteppedTime::Pass(ProcessGroup* group, std::span<pollfd> inputs,
+                                             int64_t until_ns) {
   group_ = group;
   while (AwaitsAnEnd() && ended_.empty() && !ProcessGroup::StopRequested()) {
     if (const auto ended = group->Poll(milliseconds(50))) NoteEnd(*ended);
@@ -176,14 +177,17 @@ bool SteppedTime::HolderGetsOn() {
   if (cpu_ns > kHung_cpu_ns || (sleeps && since_ns > kHung_ns)) {
     char at[32];
     std::snprintf(at, sizeof at, "%.3f", stepped_s());
-    trouble_ = who + " hangs: its turn at " + at + " s of stepped time has lasted " + Seconds(since_ns) + ", " +
-               Seconds(cpu_ns) + " of them on a processor";
+    trouble_ = who + " hangs: its turn at " + at + " s of stepped time has lasted " + Seconds(since_ns) +
+               ", " + Seconds(cpu_ns) + " of them on a processor";
     return false;
   }
   if (!told_) {
     told_ = true;
     std::cerr << "armada run: waiting for " << who << ", which "
-              << (stopped ? "is stopped by a signal" : sleeps ? "sleeps" : "gets no processor") << std::endl;
+              << (stopped  ? "is stopped by a signal"
+                  : sleeps ? "sleeps"
+                           : "gets no processor")
+              << std::endl;
   }
   return true;
 }

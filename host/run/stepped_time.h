@@ -12,9 +12,9 @@
 
 namespace armada {
 
-/// Stepped time as the run keeps it: makes the page, gives each program a slot, has slot 0 itself, and notices
-/// within a second of the machine's time when a program dies or hangs. Used by the main thread, like the
-/// ProcessGroup.
+/// Stepped time as the run keeps it: makes the page, gives each program a slot, has slot 0 itself, and
+/// notices within a second of the machine's time when a program dies or hangs. Used by the main thread, like
+/// the ProcessGroup.
 class SteppedTime final : public SteppedClock {
  public:
   /// `pace`: stepped seconds a real one, 0: as fast as it goes. Null, and the reason in `error`, on failure.
