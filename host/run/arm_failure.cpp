@@ -125,6 +125,7 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
   const std::span<const telemetry_t> ticks = evidence.arms[index].ticks;
   const std::string name = "arm " + std::to_string(id) + " ";
   if (ticks.empty()) {
+    if (evidence.broke_off_s < kMoment_s && evidence.metrics == nullptr) return std::nullopt;  // too early
     return ArmFailure{{"not_heard", id, std::nullopt, name + "was never heard on LCM"}, false};
   }
   Words words;

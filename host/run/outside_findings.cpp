@@ -115,6 +115,13 @@ std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
       findings.push_back({"emulation", 0, at_s, text + TimeText(at_s)});
     }
   }
+  const double bring_up_s = evidence.scenario->fleet.timing.bring_up_s;
+  if (evidence.started_s > -bring_up_s && evidence.real_time) {
+    char text[96];
+    std::snprintf(text, sizeof text, "; timing.bring_up_s is %g s: the machine was busy", bring_up_s);
+    findings.push_back({"start", 0, evidence.started_s,
+                        "the last program was started at " + TimeText(evidence.started_s) + text});
+  }
   if (!has_priority && evidence.real_time)
     findings.push_back({"priority", 0, std::nullopt, "boards or emulation had no real-time priority"});
   return findings;

@@ -13,7 +13,7 @@ std::vector<RunFinding> FaultFindings(const RunEvidence& evidence, double until_
 /// When the machine stood still: the `most` longest of these times in order, then one finding of the rest.
 std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<Stall> stalls, size_t most);
 
-/// Whether the emulation was late, and whether the programs had no real-time priority.
+/// Whether the emulation was late, the programs were started late, or had no real-time priority.
 std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence);
 
 }  // namespace armada

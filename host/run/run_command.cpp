@@ -128,7 +128,8 @@ class Run {
   std::optional<ProcessFaults> faults_;
   std::unique_ptr<LiveFaults> live_faults_;
   std::optional<Heartbeat> heartbeat_;
-  double ended_s_ = 0.0;  ///< time of the run
+  double started_s_ = -1e-9 * static_cast<double>(kStartUpNs);  ///< when every program was; time of the run
+  double ended_s_ = 0.0;
   std::vector<RunFinding> findings_;
   size_t running_ = 0;  ///< programs whose end is awaited
   bool interrupted_ = false;
@@ -296,6 +297,7 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
   } else {
     control_ = std::make_unique<SignalControl>(group);
   }
+  started_s_ = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   running_ = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
   faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, epoch_ns_,
                   epoch_ns_ + static_cast<int64_t>(scenario_.seconds * 1e9));
@@ -409,7 +411,8 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
     if (ended) {
       const bool well = ended->Succeeded() || faults_->TakeOrdered(*ended) || FinishedItsRun(*ended);
       if (!well || ended->name == "lcm-logger") {
-        *error = ended->Describe();
+        *error =
+            (ended->name == "lcm-logger" ? In("lcm.log") + " is not complete: " : "") + ended->Describe();
         return false;
       }
       --running_;
@@ -483,6 +486,7 @@ std::vector<RunFinding> Run::DiagnoseEnd(const std::string& why) const {
   RunEvidence evidence =
       GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, faults_ ? &*faults_ : nullptr,
                      heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
+  evidence.started_s = started_s_;
   evidence.broke_off = why;
   evidence.broke_off_s = ended_s_;
   return Diagnose(evidence);

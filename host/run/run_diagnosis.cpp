@@ -17,13 +17,23 @@ void Append(std::vector<RunFinding> more, std::vector<RunFinding>* findings) {
   findings->insert(findings->end(), more.begin(), more.end());
 }
 
+// Who ended, and the last that it said.
+std::string EndText(const std::string& broke_off) {
+  const size_t first_end = broke_off.find('\n');
+  if (first_end == std::string::npos) return broke_off;
+  std::string text = broke_off.substr(0, first_end);
+  if (const size_t log = text.rfind("; the end of "); log != std::string::npos) text.erase(log);
+  const size_t last = broke_off.find_first_not_of(' ', broke_off.rfind('\n') + 1);
+  return last == std::string::npos ? text : text + ": " + broke_off.substr(last);
+}
+
 // What is of no arm: the run broke off, or the fleet misses its criterion.
 std::vector<RunFinding> FleetFailures(const RunEvidence& evidence) {
   std::vector<RunFinding> failures;
   if (!evidence.broke_off.empty()) {
-    const std::string first_line = evidence.broke_off.substr(0, evidence.broke_off.find('\n'));
-    failures.push_back({"program", 0, evidence.broke_off_s,
-                        "the run broke off at " + TimeText(evidence.broke_off_s) + ": " + first_line});
+    failures.push_back(
+        {"program", 0, evidence.broke_off_s,
+         "the run broke off at " + TimeText(evidence.broke_off_s) + ": " + EndText(evidence.broke_off)});
   }
   if (evidence.metrics == nullptr) return failures;
   const CriterionConfig& criterion = evidence.scenario->criterion;

@@ -38,7 +38,8 @@ struct RunEvidence {
   bool heartbeat_is_foremost = true;
   int processors = 1;
   std::vector<ProcessFaults::Made> faults_made;
-  std::string broke_off;  ///< why, when it did
+  double started_s = -1.0;  ///< when every program had been started
+  std::string broke_off;    ///< why, when it did: a program's end with the end of its log
   double broke_off_s = 0.0;
 
   double TimeOf(int64_t t_ns) const { return 1e-9 * static_cast<double>(t_ns - epoch_ns); }

@@ -223,16 +223,30 @@ TEST_F(DiagnosisTest, LossesOfABoardAndOfTheEmulationAreTold) {
 }
 
 TEST_F(DiagnosisTest, ARunThatBrokeOffNamesWhoWasNotHeard) {
-  evidence_.broke_off = "arm 7 (pid 5) was ended by signal 9 (SIGKILL); the end of its log:\n  nothing";
+  evidence_.broke_off =
+      "arm 7 (pid 5) was ended by signal 9 (SIGKILL); the end of its.txt:\n  more\n  its last words";
   evidence_.broke_off_s = 4.5;
   TicksOf(3).resize(450);
   TicksOf(7).clear();
   const auto findings = Result();
   ASSERT_EQ(findings.size(), 2u);
   EXPECT_EQ(findings[0].text,
-            "the run broke off at 4.500 s: arm 7 (pid 5) was ended by signal 9 (SIGKILL); "
-            "the end of its log:");
+            "the run broke off at 4.500 s: arm 7 (pid 5) was ended by signal 9 (SIGKILL): its last words");
   EXPECT_EQ(findings[1].kind, "not_heard");
+}
+
+TEST_F(DiagnosisTest, ABusyMachineThatStartsProgramsLateIsNamed) {
+  evidence_.broke_off = "arm 3 (pid 5) exited with code 1; its log its.txt is empty";
+  evidence_.broke_off_s = 0.1;
+  evidence_.started_s = -0.7;
+  for (const int id : {3, 7}) TicksOf(id).clear();
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 2u) << "so early nobody can have been heard";
+  EXPECT_EQ(findings[0].kind, "program");
+  EXPECT_EQ(
+      findings[1].text,
+      "the last program was started at 0.700 s before the start; timing.bring_up_s is 1 s: the machine was "
+      "busy");
 }
 
 TEST_F(DiagnosisTest, EveryMissHasAFinding) {

@@ -16,13 +16,13 @@ clean_up() {
 trap clean_up EXIT
 . "$source/tests/host/expect.sh"
 
-# start NAME SECONDS: a run in the background, its emulation and its boards up.
+# start NAME SECONDS: a run in the background, in its time.
 start() {
   "$armada" run "$scenario" --time real --seconds "$2" --set window_start_s=1.0 --out "$work/$1" >"$work/$1.txt" 2>&1 &
   run=$!
   wait_for 20 up "$1" || fail "$1 did not begin: $(cat "$work/$1.txt")"
 }
-up() { [ -p "$work/$1/faults.hil" ] && pgrep -f "armada-arm $work/$1/.* --arm 7 " >/dev/null; }
+up() { [ -s "$work/$1/lcm.log" ]; }  # boards have ticked
 wait_for() { # wait_for SECONDS COMMAND...
   local deadline=$((SECONDS + $1))
   shift
@@ -53,7 +53,7 @@ expect 2 'stalled is in use by another run' "$armada" report "$work/stalled"
 "$armada" run "$scenario" --time real --seconds 0.5 --set window_start_s=0.1 --out "$work/second" >"$work/second.txt" 2>&1
 [ $? -le 1 ] || fail "a second run: $(cat "$work/second.txt")"
 says second "udpm://239.255.76.67:7667 is in use by another run .process $run.: running in a private network namespace"
-[ -s "$work/second/metrics.json" ] || fail "a second run has no result: $(cat "$work/second.txt")"
+[ -s "$work/second/metrics.json" ] || says second 'the run broke off'
 
 # Everything stands still for 0.3 s: the machine, as far as the run can see.
 mapfile -t programs < <(pgrep -P "$run")
@@ -70,8 +70,6 @@ metrics = json.load(open(sys.argv[1]))
 kinds = [finding["kind"] for finding in metrics["diagnosis"]]
 assert not metrics["ok"] and "stall" in kinds and "stopped" in kinds, metrics["diagnosis"]
 PY
-expect 0 'report.html' "$armada" report "$work/stalled"
-grep -q '<li>the machine stood still' "$work/stalled/report.html" || fail "the stall is not in the report"
 nothing_left stalled || fail "a run leaves behind: $(left_behind stalled)"
 
 # A run that is killed leaves nothing; the next one in its folder works at once, and tells whose end ended it.
@@ -98,7 +96,8 @@ run_on_small_disk() { # run_on_small_disk SIZE
 if [ "$(id -u)" = 0 ] && unshare --mount true 2>/dev/null; then
   for size in 16k 400k; do
     rm -rf "$work/disk.kept"
-    expect 1 'run/.*No space left on device|No space left on device.*run/' run_on_small_disk $size
+    expect 1 'No space left on device' run_on_small_disk $size
+    grep -qE 'disk/run/[a-z_0-9]+\.[a-z]+' "$work/out" || fail "a full disk, but no file: $(cat "$work/out")"
     [ ! -e "$work/disk.kept/run/metrics.json" ] || fail "a run on a full disk has a result"
   done
 else
