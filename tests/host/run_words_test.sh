@@ -18,6 +18,7 @@ trap clean_up EXIT
 
 # start NAME SECONDS: a run in the background, in its time.
 start() {
+  rm -f "$work/$1/lcm.log"  # of a run before
   "$armada" run "$scenario" --time real --seconds "$2" --set window_start_s=1.0 --out "$work/$1" >"$work/$1.txt" 2>&1 &
   run=$!
   wait_for 20 up "$1" || fail "$1 did not begin: $(cat "$work/$1.txt")"
