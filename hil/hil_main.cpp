@@ -21,7 +21,6 @@
 #include "hil/hil_server.h"
 #include "hil/poll_clock.h"
 #include "hil/scenario_file.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {

@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include "hil/fault_meaning.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 
