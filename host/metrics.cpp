@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "firmware/app/whole_file.h"
 #include "firmware/core/named_enum.h"

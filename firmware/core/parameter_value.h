@@ -26,11 +26,9 @@ struct Choice {
 /// Names of an enum as those of a Choice.
 template <NamedEnum Enum>
 inline constexpr auto kChoiceNames = [] {
-  std::array<Choice::Name, EnumNames(Enum{}).size()> names{};
-  for (size_t i = 0; i < names.size(); ++i) {
-    const auto& [value, name] = EnumNames(Enum{})[i];
-    names[i] = {static_cast<int>(value), name};
-  }
+  constexpr auto kNames = EnumNames(Enum{});
+  std::array<Choice::Name, kNames.size()> names{};
+  for (size_t i = 0; i < names.size(); ++i) names[i] = {static_cast<int>(kNames[i].first), kNames[i].second};
   return names;
 }();
 
