@@ -40,13 +40,13 @@ std::string StopText(const telemetry_t& stop, const telemetry_t& last, double at
   return text;
 }
 
-/// Collects what the arm misses and when the first of it showed.
+/// Collects what the arm misses, the most telling first, and when that showed.
 class Words {
  public:
   void Add(const std::string& kind, std::optional<double> at_s, const std::string& text) {
     if (text_.empty()) kind_ = kind;
     text_ += (text_.empty() ? "" : ", ") + text;
-    if (at_s && (!at_s_ || *at_s < *at_s_)) at_s_ = at_s;
+    if (!at_s_) at_s_ = at_s;
   }
   bool empty() const { return text_.empty(); }
   const std::string& kind() const { return kind_; }
@@ -163,23 +163,24 @@ std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
   if (!board.is_object()) return std::nullopt;
   std::string text;
   const auto add = [&](int64_t count, const std::string& words) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + words;
+    if (count > 0) text += (text.empty() ? "" : ", ") + words + " " + std::to_string(count);
   };
   const auto count = [&](const char* section, const char* key) {
     return board.at(section).at(key).get<int64_t>();
   };
-  add(count("timing", "missed_ticks"), "ticks missed");
-  add(count("timing", "incomplete_samples"), "without every sample");
-  add(count("timing", "unsent_ticks"), "whose torques were not on the wire in time");
-  add(count("bus", "can_dropped") + count("bus", "can_dropped_late"), "CAN frames dropped");
-  add(count("bus", "can_receive_overflowed"), "CAN frames overflowed");
+  add(count("timing", "missed_ticks"), "missed ticks");
+  add(count("timing", "incomplete_samples"), "ticks without every sample");
+  add(count("timing", "unsent_ticks"), "ticks whose torques were not on the wire in time");
+  add(count("bus", "can_dropped") + count("bus", "can_dropped_late"), "dropped CAN frames");
+  add(count("bus", "can_receive_overflowed"), "overflowed CAN frames");
   add(count("bus", "can_errors"), "CAN errors");
-  add(count("bus", "lcm_overflowed"), "LCM messages overflowed");
-  add(count("bus", "lcm_rejected"), "LCM messages rejected");
+  add(count("bus", "lcm_overflowed"), "overflowed LCM messages");
+  add(count("bus", "lcm_rejected"), "rejected LCM messages");
   for (const Json& sender : board.at("bus").at("lcm_heard")) {
     const int from = sender.at("from").get<int>();
     add(sender.at("missed").get<int64_t>(),
-        "messages of " + (from == 0 ? "the leader" : "arm " + std::to_string(from)) + " missed");
+        std::string("missed messages of ") +
+            (from == 0 ? "the leader:" : "arm " + std::to_string(from) + ":"));
   }
   if (text.empty()) return std::nullopt;
   const int id = evidence.scenario->fleet.arms[index].id;
