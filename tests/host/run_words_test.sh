@@ -83,7 +83,7 @@ start killed 20
 pkill -KILL -f "armada-arm $work/killed/.* --arm 2 "
 ended 1 killed
 says killed '^armada run: arm 2 .pid [0-9]+. was ended by signal 9 .SIGKILL.'
-says killed '^  the run broke off at [0-9.]+ s: arm 2'
+says killed '^  the run broke off at [0-9.]+ s[a-z ]*: arm 2'
 [ ! -e "$work/killed/metrics.json" ] || fail "a run that broke off has a result"
 wait_for 5 nothing_left killed || fail "a killed run leaves behind: $(left_behind killed)"
 
