@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
 """Runs clang-tidy over the project's own sources, and only over those that changed since they last passed.
 
-usage: cached_clang_tidy.py BUILD_DIR CACHE_DIR
+usage: cached_clang_tidy.py CACHE_DIR BUILD_DIR...
 
-BUILD_DIR is an up-to-date Ninja build with compile_commands.json. A source that passes leaves an empty file in
-CACHE_DIR named after everything the verdict depends on: its compile command, the .clang-tidy files of its folders,
-clang-tidy's version and the contents of every file the compiler read for it (Ninja's record). Findings go to standard
-error, exit code 1.
+Each BUILD_DIR is an up-to-date Ninja build with compile_commands.json; a source is checked as the first build that has
+it compiles it, but without the compiler's precompiled headers.
+
+Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources with the same
+flags are checked in batches, as one translation unit. A batch that passes shows that each of its sources would: no check
+of ours is silenced by other code but misc-unused-using-decls, and that one is run on each source alone. A batch that does
+not pass, or does not compile as one, is halved, so that what is reported comes from a source alone.
+
+A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: its compile
+command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read
+for it (Ninja's record). Findings go to standard error, exit code 1.
 """
 
 import concurrent.futures
@@ -15,31 +22,45 @@ import hashlib
 import json
 import os
 import pathlib
+import re
+import shlex
 import subprocess
 import sys
+import threading
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+BATCH = 16  # sources
+PER_SOURCE_CHECK = "misc-unused-using-decls"
+PRECOMPILED = re.compile(r" (-Winvalid-pch|-fpch-instantiate-templates|-Xclang -emit-pch|"
+                         r"(-Xclang )?-include(-pch)?( -Xclang)? \S*cmake_pch\S*)(?= )")
+
+DECLARED = re.compile(r"^(?!namespace|using)[a-zA-Z][^(={;/]*?[ *&](\w+) *(?:[({=;\[]|:(?!:))", re.MULTILINE)
+USED = re.compile(r"^ *using [\w:]+::(\w+);", re.MULTILINE)
 
 
-def own_sources(build):
-    """Compile commands by source, without what the build itself made."""
-    commands = {}
-    for entry in json.loads((build / "compile_commands.json").read_text()):
-        source = pathlib.Path(entry["file"])
-        if source.is_relative_to(ROOT) and not source.is_relative_to(build):
-            commands.setdefault(source, entry["command"])
-    return commands
+def own_sources(builds):
+    """Flags by source, without what the builds themselves made."""
+    flags = {}
+    for build in builds:
+        for entry in json.loads((build / "compile_commands.json").read_text()):
+            source = pathlib.Path(entry["file"])
+            if source.is_relative_to(ROOT) and not any(source.is_relative_to(made) for made in builds):
+                command = PRECOMPILED.sub("", entry["command"].partition(" -o ")[0] + " ")
+                flags.setdefault(source, tuple(shlex.split(command)[1:]))
+    return flags
 
 
-def files_read(build):
+def files_read(builds):
     """For each source the files its compilation read; the first one that Ninja names is the source."""
-    listing = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
     read = {}
-    for block in listing.split("\n\n"):
-        lines = block.splitlines()[1:]
-        paths = [pathlib.Path(os.path.normpath(build / line.strip())) for line in lines]
-        if paths:
-            read[paths[0]] = paths
+    for build in builds:
+        command = ["ninja", "-C", build, "-t", "deps"]
+        listing = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        for block in listing.split("\n\n"):
+            lines = block.splitlines()[1:]
+            paths = [pathlib.Path(os.path.normpath(build / line.strip())) for line in lines]
+            if paths:
+                read.setdefault(paths[0], paths)
     return read
 
 
@@ -48,36 +69,84 @@ def digest(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def names_at_file_scope(source):
+    """Roughly what the source declares there: two sources of one batch must not declare the same."""
+    return set(DECLARED.findall(source.read_text())) | set(USED.findall(source.read_text()))
+
+
+def in_batches(sources, flags):
+    batches = []  # of flags, names and sources
+    for source in sources:
+        names = names_at_file_scope(source)
+        for batch in batches:
+            if batch[0] == flags[source] and len(batch[2]) < BATCH and not names & batch[1]:
+                batch[1].update(names)
+                batch[2].append(source)
+                break
+        else:
+            batches.append((flags[source], names, [source]))
+    return sorted((batch[2] for batch in batches), key=len, reverse=True)  # the long ones first
+
+
 def main():
-    build, cache = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    cache, *builds = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     cache.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True, text=True).stdout
-    read = files_read(build)
+    read = files_read(builds)
+    flags = own_sources(builds)
 
-    def passed_marker(source, command):
+    def passed_marker(source):
         configs = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
         inputs = [config for config in configs if config.exists()] + read[source]
-        parts = [version, command] + [f"{path} {digest(path)}" for path in inputs]
+        parts = [version, *flags[source]] + [f"{path} {digest(path)}" for path in inputs]
         return cache / hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
-    def check(source):
-        return subprocess.run(["clang-tidy", "--quiet", "-p", build, source],
+    def tidy(file, source, *options):
+        return subprocess.run(["clang-tidy", "--quiet", *options, file, "--", *flags[source]],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 
-    commands = own_sources(build)
-    markers = {source: passed_marker(source, command) for source, command in commands.items()}
+    markers = {source: passed_marker(source) for source in flags}
     changed = [source for source, marker in markers.items() if not marker.exists()]
-    findings = 0
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for number, (source, result) in enumerate(zip(changed, pool.map(check, changed)), start=1):
+    alone = {source for source in changed if USED.search(source.read_text())}
+    done = 0
+    lock = threading.Lock()
+
+    def batch_passes(batch):
+        """Whether all of the sources as one pass all checks but PER_SOURCE_CHECK."""
+        unit = cache / f"batch_{hashlib.sha256(str(batch).encode()).hexdigest()}.cpp"
+        unit.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in batch))
+        try:
+            return tidy(unit, batch[0], f"--checks=-{PER_SOURCE_CHECK}").returncode == 0
+        finally:
+            unit.unlink()
+
+    def check(batch):
+        """The number of sources with findings."""
+        nonlocal done
+        if len(batch) == 1:
+            results = [tidy(batch[0], batch[0])]
+        elif batch_passes(batch):
+            results = [tidy(source, source, f"--checks=-*,{PER_SOURCE_CHECK}") if source in alone else None
+                       for source in batch]
+        else:
+            middle = len(batch) // 2
+            return check(batch[:middle]) + check(batch[middle:])
+        findings = 0
+        with lock:
+            for source, result in zip(batch, results):
+                if result is None or result.returncode == 0:
+                    markers[source].touch()
+                else:
+                    findings += 1
+                    print(result.stdout or f"clang-tidy failed on {source}", file=sys.stderr)
+            done += len(batch)
             if sys.stderr.isatty():
-                print(f"\r\033[Kclang-tidy {number}/{len(changed)}", end="\r", file=sys.stderr)
-            if result.returncode == 0:
-                markers[source].touch()
-            else:
-                findings += 1
-                print(result.stdout or f"clang-tidy failed on {source}", file=sys.stderr)
-    print(f"{len(commands)} files, {len(changed)} checked, the others unchanged")
+                print(f"\r\033[Kclang-tidy {done}/{len(changed)}", end="\r", file=sys.stderr)
+        return findings
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        findings = sum(pool.map(check, in_batches(changed, flags)))
+    print(f"{len(flags)} files, {len(changed)} checked, the others unchanged")
     return 1 if findings else 0
 
 

@@ -205,8 +205,8 @@ int Run(const Options& options) {
   }
   Logs logs;
   const int64_t wall_offset_ns = WallOffset(*program_clock);
-  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns, !options.stepped_clock.empty(), &logs,
-                                          &error))
+  if (!options.out.empty() && !CreateLogs(scenario->fleet, options.out, wall_offset_ns,
+                                          !options.stepped_clock.empty(), &logs, &error))
     return Fail(error);
 
   const int64_t now_ns = clock->Now();

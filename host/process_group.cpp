@@ -229,10 +229,15 @@ std::optional<ProcessExit> ProcessGroup::Poll(Duration timeout) {
   return ReapUntil(Clock::now() + timeout, /*heed_stop=*/true);
 }
 
-bool ProcessGroup::Signal(const std::string& name, int signal_number) const {
+std::optional<pid_t> ProcessGroup::Find(const std::string& name) const {
   const auto child =
       std::find_if(children_.begin(), children_.end(), [&](const Child& c) { return c.name == name; });
-  return child != children_.end() && kill(-child->pid, signal_number) == 0;
+  return child == children_.end() ? std::nullopt : std::optional(child->pid);
+}
+
+bool ProcessGroup::Signal(const std::string& name, int signal_number) const {
+  const auto pid = Find(name);
+  return pid && kill(-*pid, signal_number) == 0;
 }
 
 std::vector<ProcessExit> ProcessGroup::StopAll(Duration grace) {

@@ -63,6 +63,9 @@ class ProcessGroup {
   /// wait.
   std::optional<ProcessExit> Poll(Duration timeout = Duration::zero());
 
+  /// The process of a program; nothing if there is none of that name.
+  std::optional<pid_t> Find(const std::string& name) const;
+
   /// Sends a signal to a program and its descendants. False if there is none of that name.
   bool Signal(const std::string& name, int signal_number) const;
 

@@ -160,7 +160,7 @@ void ArmLoop::PublishTelemetry() {
   node_->FillTelemetry(&telemetry_);
   telemetry_.missed_ticks = static_cast<int32_t>(report_.missed_ticks);
   telemetry_.heap_allocations = report_.heap_allocations;
-  telemetry_.page_faults = report_.page_faults;
+  telemetry_.page_faults = clock_->IsStepped() ? 0 : report_.page_faults;
   const BusCounters& can = bus_->counters();
   telemetry_.can_sent = static_cast<int64_t>(can.sent);
   telemetry_.can_received = static_cast<int64_t>(can.received);

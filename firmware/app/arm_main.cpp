@@ -110,7 +110,8 @@ int Run(const Options& options) {
   const BoardStart start{options.running ? StartMode::kRunning : StartMode::kMonitor, FleetDigest(*fleet),
                          identity};
   const auto node = std::make_unique<ArmNode>(*fleet, static_cast<size_t>(index), *initial, epoch_ns, start);
-  const auto loop = std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), clock.get(), fleet->timing, epoch_ns);
+  const auto loop =
+      std::make_unique<ArmLoop>(node.get(), bus.get(), link.get(), clock.get(), fleet->timing, epoch_ns);
   if (options.running && !loop->BringUp(&stop_requested)) {
     return Fail(options, stop_requested != 0
                              ? "stopped before the start"

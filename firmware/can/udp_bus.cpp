@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "firmware/clock/monotonic.h"
 #include "firmware/can/udp_frame_codec.h"
+#include "firmware/clock/monotonic.h"
 
 namespace armada {
 namespace {
@@ -55,8 +55,8 @@ std::string Explain(const std::string& group, uint16_t port, const char* step, i
 
 }  // namespace
 
-std::unique_ptr<UdpCanBus> UdpCanBus::Open(const std::string& group, uint16_t port, uint8_t ttl,
-                                           Clock* clock, std::string* error) {
+std::unique_ptr<UdpCanBus> UdpCanBus::Open(const std::string& group, uint16_t port, uint8_t ttl, Clock* clock,
+                                           std::string* error) {
   const auto failed = [&](const char* step) {
     *error = Explain(group, port, step, errno);
     return nullptr;

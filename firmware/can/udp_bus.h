@@ -18,8 +18,8 @@ namespace armada {
 /// not kept.
 class UdpCanBus final : public CanBus {
  public:
-  /// `group`: IPv4 multicast, dotted. `clock` outlives the object. Null on failure, and then `error` says what
-  /// failed and what to do.
+  /// `group`: IPv4 multicast, dotted. `clock` outlives the object. Null on failure, and then `error` says
+  /// what failed and what to do.
   static std::unique_ptr<UdpCanBus> Open(const std::string& group, uint16_t port, uint8_t ttl, Clock* clock,
                                          std::string* error);
 

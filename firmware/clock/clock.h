@@ -10,13 +10,18 @@
 namespace armada {
 
 /// A process's time, and all its waiting. Buses, endpoints and loops have no other: what they do is the same
-/// on the machine's clock and on that of a run in stepped time. One thread uses one object; no call allocates.
+/// on the machine's clock and on that of a run in stepped time. One thread uses one object; no call
+/// allocates.
 class Clock {
  public:
   Clock() = default;
   Clock(const Clock&) = delete;
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
+
+  /// Whether time stands while programs compute. What the machine does to a program meanwhile, page faults
+  /// say, is not of such a run.
+  virtual bool IsStepped() const { return false; }
 
   /// CLOCK_MONOTONIC, ns: the only time of the control path.
   virtual int64_t Now() const = 0;

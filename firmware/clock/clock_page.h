@@ -42,7 +42,7 @@ struct ClockPage {
 
   uint32_t magic = kMagic;
   uint32_t slots = 0;
-  double pace = 0.0;        ///< stepped seconds a real one; 0: as fast as it goes
+  double pace = 0.0;           ///< stepped seconds a real one; 0: as fast as it goes
   int64_t wall_offset_ns = 0;  ///< from stepped time to the run's wall clock
   std::atomic<int64_t> now_ns{0};
   std::atomic<int64_t> next_step_ns{0};  ///< CLOCK_MONOTONIC: when the present instant began, paced

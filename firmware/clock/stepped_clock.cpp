@@ -132,7 +132,8 @@ void SteppedClock::Wait(std::span<pollfd> inputs, int64_t deadline_ns) {
 void SteppedClock::Await(std::span<const pollfd> inputs) {
   std::array<uint64_t, ClockPage::kMaxGroups / 64> awaited{};
   for (const pollfd& input : inputs) {
-    if (const Subscription* found = Find(input.fd)) awaited[found->group / 64] |= uint64_t{1} << found->group % 64;
+    if (const Subscription* found = Find(input.fd))
+      awaited[found->group / 64] |= uint64_t{1} << found->group % 64;
   }
   for (size_t i = 0; i < awaited.size(); ++i) self().awaited[i] = awaited[i];
 }
@@ -167,7 +168,8 @@ int64_t SteppedClock::LeastDeadline() const {
   int64_t least_ns = INT64_MAX;
   for (size_t i = 0; i < page_->slots; ++i) {
     const ClockPage::Slot& slot = page_->slot[i];
-    if (slot.state == State::kWaiting && !slot.suspended) least_ns = std::min(least_ns, slot.deadline_ns.load());
+    if (slot.state == State::kWaiting && !slot.suspended)
+      least_ns = std::min(least_ns, slot.deadline_ns.load());
   }
   return least_ns;
 }

@@ -9,11 +9,11 @@
 
 namespace armada {
 
-/// The clock of a run in stepped time, as one of its programs sees it (conservative discrete-event execution).
-/// One program runs at a time. Who begins to wait hands the turn on: to the next whose deadline has come, in
-/// the order of the slots; when there is none, to one that awaits a datagram which has come, slot 0 last; when
-/// there is none either, time becomes the least deadline. Computing takes no time, what is sent arrives in the
-/// same instant, and whoever is slow is waited for.
+/// The clock of a run in stepped time, as one of its programs sees it (conservative discrete-event
+/// execution). One program runs at a time. Who begins to wait hands the turn on: to the next whose deadline
+/// has come, in the order of the slots; when there is none, to one that awaits a datagram which has come,
+/// slot 0 last; when there is none either, time becomes the least deadline. Computing takes no time, what is
+/// sent arrives in the same instant, and whoever is slow is waited for.
 ///
 /// Emulation only: a program that uses it must have no real bus and no real network.
 class SteppedClock : public Clock {
@@ -25,6 +25,7 @@ class SteppedClock : public Clock {
   /// Leaves the run.
   ~SteppedClock() override;
 
+  bool IsStepped() const override { return true; }
   int64_t Now() const override;
   int64_t WallNow() const override { return Now() + page_->wall_offset_ns; }
   int64_t WallTimeOf(const timespec& kernel_stamp) const override;

@@ -9,7 +9,7 @@ fail() {
 # find_kernel stock|rt: sets $kernel.
 find_kernel() {
   kernel=${ARMADA_VM_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/armada/vm}/$1
-  [[ -f $kernel/vmlinuz ]] || fail "no kernel in $kernel; get it with $here/image (it needs the network once)"
+  [[ -f $kernel/vmlinux ]] || fail "no kernel in $kernel; get it with $here/image (it needs the network once)"
   local tool
   for tool in qemu-system-x86_64 busybox cpio modprobe; do
     command -v "$tool" >/dev/null ||
@@ -74,7 +74,7 @@ boot() {
   pack
   setpriv --pdeathsig KILL qemu-system-x86_64 -nodefaults -no-user-config -display none -no-reboot -net none \
     -machine pc -cpu max,-rdrand,-rdseed -accel tcg -smp 1 -m 1024 -icount "shift=0$sleep" \
-    -kernel "$kernel/vmlinuz" -initrd "$work/initramfs" \
+    -kernel "$kernel/vmlinux" -initrd "$work/initramfs" \
     -append "console=ttyS0 quiet loglevel=4 panic=-1 $lean $arguments" \
     -serial "file:$work/console" -serial "$output_port" -serial "file:$work/status" \
     "$@" </dev/null &

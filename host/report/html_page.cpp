@@ -75,8 +75,9 @@ std::string Verdict(const RecordedRun& run) {
   const bool ok = RequireKey(run.metrics, "ok", "the top level").get<bool>();
   const std::string diagnosis = DiagnosisText(run);
   const std::string why = (ok || diagnosis.empty() ? BlameText(run, ok) : "") + diagnosis;
-  const std::string how = Top(run, "mode") == "run" ? "armada run: real time, one process an arm"
-                                                    : "armada sim: virtual time, one process";
+  const std::string how = Top(run, "mode") != "run"         ? "armada sim: virtual time, one process"
+                          : run.metrics.contains("stepped") ? "armada run: stepped time, one process an arm"
+                                                            : "armada run: real time, one process an arm";
   std::string html = std::string("<div class=\"verdict") + (ok ? "" : " bad") + "\"><h1>" +
                      Top(run, "scenario") + ", seed " + Top(run, "seed") + ": <b>" + (ok ? "ok" : "NOT ok") +
                      "</b></h1><p>" + FleetText(run) + "</p>" + why + "</div>\n<dl>";

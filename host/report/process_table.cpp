@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace armada {
 namespace {
 
-constexpr std::array kSections = {"timing", "memory", "bus"};
+constexpr std::array<const char*, 3> kSections = {"timing", "memory", "bus"};
 
 std::string NameOf(const Json& object, const std::string& key) {
   if (object.contains("name")) return object["name"].get<std::string>();
@@ -42,27 +43,31 @@ void AddValues(const Json& value, const std::string& quantity, const std::string
   table->values[{quantity, process}] = value;
 }
 
-void Collect(const Json& value, const std::string& key, ProcessTable* table) {
+/// `sections` of every process below `value`.
+void Collect(const Json& value, const std::string& key, std::span<const char* const> sections,
+             ProcessTable* table) {
   const bool is_process =
       value.is_object() &&
-      std::any_of(kSections.begin(), kSections.end(), [&](const char* name) { return value.contains(name); });
+      std::any_of(sections.begin(), sections.end(), [&](const char* name) { return value.contains(name); });
   if (is_process) {
     const std::string name = NameOf(value, key);
     table->processes.push_back(name);
-    for (const char* section : kSections) {
+    for (const char* section : sections) {
       if (value.contains(section)) AddValues(value[section], section, name, table);
     }
     return;
   }
   if (!value.is_structured()) return;
-  for (const auto& [part_key, part] : value.items()) Collect(part, part_key, table);
+  for (const auto& [part_key, part] : value.items()) Collect(part, part_key, sections, table);
 }
 
 }  // namespace
 
 ProcessTable CollectProcesses(const Json& metrics) {
   ProcessTable table;
-  Collect(metrics, "", &table);
+  // Of stepped time there are no timings: computing took none.
+  const std::span all(kSections);
+  Collect(metrics, "", metrics.contains("stepped") ? all.subspan(1) : all, &table);
   return table;
 }
 

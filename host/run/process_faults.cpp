@@ -34,11 +34,11 @@ class Foremost {
 }  // namespace
 
 ProcessFaults::ProcessFaults(const std::vector<FaultConfig>& faults,
-                             const std::map<int, std::string>& interfaces, Clock* clock, bool stepped,
-                             int64_t epoch_ns, int64_t end_ns)
+                             const std::map<int, std::string>& interfaces, Clock* clock, int64_t epoch_ns,
+                             int64_t end_ns)
     : interfaces_(interfaces),
       clock_(clock),
-      lead_ns_(stepped ? 0 : kLead_ns),
+      lead_ns_(clock->IsStepped() ? 0 : kLead_ns),
       epoch_ns_(epoch_ns),
       end_ns_(end_ns) {
   for (const FaultConfig& fault : faults) Add(fault);

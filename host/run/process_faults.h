@@ -37,7 +37,7 @@ class ProcessFaults {
   /// end, and stays up. What would be over after `end_ns` never is. `clock`, stepped or the machine's,
   /// outlives the object.
   ProcessFaults(const std::vector<FaultConfig>& faults, const std::map<int, std::string>& interfaces,
-                Clock* clock, bool stepped, int64_t epoch_ns, int64_t end_ns);
+                Clock* clock, int64_t epoch_ns, int64_t end_ns);
   ProcessFaults(const ProcessFaults&) = delete;
   ProcessFaults& operator=(const ProcessFaults&) = delete;
   /// Interfaces that are still down are set up.

@@ -299,7 +299,7 @@ bool Run::StartAll(ProcessGroup* group, std::string* error) {
   }
   started_s_ = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   running_ = scenario_.fleet.arms.size() + 1 + (scenario_.leader.kind == LeaderKind::kNone ? 0 : 1);
-  faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, stepped_ != nullptr, epoch_ns_,
+  faults_.emplace(scenario_.faults, BoardInterfaces(), clock_, epoch_ns_,
                   epoch_ns_ + static_cast<int64_t>(scenario_.seconds * 1e9));
   return true;
 }
@@ -463,15 +463,14 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
         " datagrams were sent and never arrived: this machine's network cannot carry a run in stepped time";
     return false;
   }
-  if (!recorder_->WriteTraces(out_.string(), error)) return false;
+  if (!recorder_->WriteTraces(out_.string(), !stepped_, error)) return false;
   if (!CollectRunResult(scenario_, options_.seed, *recorder_, *faults_, out_.string(), metrics, json, error))
     return false;
   (*json)["time"] = options_.time;
   if (stepped_) {
-    (*json)["timing"] = {{"pace", options_.pace},
-                         {"stepped_s", stepped_->stepped_s()},
-                         {"real_s", stepped_->real_s()},
-                         {"datagrams_late", stepped_->late()}};
+    (*json)["stepped"] = {{"pace", options_.pace},
+                          {"stepped_s", stepped_->stepped_s()},
+                          {"timing", {{"real_s", stepped_->real_s()}, {"datagrams_late", stepped_->late()}}}};
   }
   RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
                                         heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
@@ -560,9 +559,8 @@ int RunRunCommand(const RunOptions& options) {
   }
   PrintArmTable(metrics, std::cout);
   if (options.time == "stepped") {
-    const nlohmann::ordered_json& timing = json.at("timing");
-    const double stepped_s = timing.at("stepped_s").get<double>();
-    const double real_s = timing.at("real_s").get<double>();
+    const double stepped_s = json.at("stepped").at("stepped_s").get<double>();
+    const double real_s = json.at("stepped").at("timing").at("real_s").get<double>();
     std::printf("stepped time: %.1f s in %.1f s, %.1f times real time; computing took none of it\n",
                 stepped_s, real_s, stepped_s / real_s);
   } else {

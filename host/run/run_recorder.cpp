@@ -163,7 +163,7 @@ double RunRecorder::EstimateSpread() const {
   return spread_m;
 }
 
-bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) const {
+bool RunRecorder::WriteTraces(const std::string& directory, bool with_timing, std::string* error) const {
   TraceWriter trace(directory, scenario_.fleet);
   if (!trace.ok()) {
     *error = trace.error();
@@ -176,12 +176,12 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
   }
 
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> timing(
-      std::fopen((directory + "/timing.csv").c_str(), "w"), std::fclose);
-  if (!timing) {
+      with_timing ? std::fopen((directory + "/timing.csv").c_str(), "w") : nullptr, std::fclose);
+  if (with_timing && !timing) {
     *error = "cannot write " + directory + "/timing.csv: " + std::strerror(errno);
     return false;
   }
-  std::fputs("arm,t_s,wakeup_lateness_us,compute_us,sample_to_torque_us\n", timing.get());
+  if (timing) std::fputs("arm,t_s,wakeup_lateness_us,compute_us,sample_to_torque_us\n", timing.get());
 
   for (size_t i = 0; i < arms_.size(); ++i) {
     const PlanarArm arm(scenario_.fleet.arms[i].arm);
@@ -211,6 +211,7 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
       row.clearance_m = ClearanceOf(arm, q);
       row.synced = tick.synced != 0;
       trace.Arm(i, row);
+      if (!timing) continue;
       std::fprintf(timing.get(), "%d,%.6f,%d,%d,%d\n", static_cast<int>(tick.arm_id), t_s,
                    tick.wakeup_lateness_us, tick.compute_us, tick.sample_to_torque_us);
     }
@@ -219,7 +220,7 @@ bool RunRecorder::WriteTraces(const std::string& directory, std::string* error) 
     *error = trace.error();
     return false;
   }
-  if (std::fflush(timing.get()) == 0 && std::ferror(timing.get()) == 0) return true;
+  if (!timing || (std::fflush(timing.get()) == 0 && std::ferror(timing.get()) == 0)) return true;
   *error = "cannot write " + directory + "/timing.csv: " + std::strerror(errno);
   return false;
 }

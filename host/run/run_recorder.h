@@ -37,8 +37,8 @@ class RunRecorder {
   TrackingRecord Tracking(size_t index) const;
   /// Largest distance between two arms' estimates of x in the window, m.
   double EstimateSpread() const;
-  /// Writes leader.csv, arm_<id>.csv and timing.csv. False with *error set.
-  bool WriteTraces(const std::string& directory, std::string* error) const;
+  /// Writes leader.csv, arm_<id>.csv and, of a run in real time, timing.csv. False with *error set.
+  bool WriteTraces(const std::string& directory, bool with_timing, std::string* error) const;
 
  private:
   struct ArmRecord {

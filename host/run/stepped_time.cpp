@@ -40,6 +40,15 @@ char StateOf(pid_t pid) {
   return end != std::string::npos && end + 2 < line.size() ? line[end + 2] : '?';
 }
 
+// For people: who, and what keeps it.
+std::string Describe(const std::string& program, pid_t pid) {
+  const char state = StateOf(pid);
+  const char* const what = state == 'T' || state == 't'   ? "stopped by a signal"
+                           : state == 'S' || state == 'D' ? "asleep"
+                                                          : "at work or waiting for a processor";
+  return program + " (pid " + std::to_string(pid) + ", " + what + ")";
+}
+
 std::string Seconds(int64_t duration_ns) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f s", 1e-9 * static_cast<double>(duration_ns));
@@ -97,9 +106,11 @@ std::vector<std::string> SteppedTime::ArgumentsFor(const std::string& program) {
 
 bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
   const int64_t begin_ns = Now_ns(CLOCK_MONOTONIC);
+  bool told = false;
   for (size_t i = 0; i < programs_.size(); ++i) {
     while (running_[i] && page()->slot[i + 1].state == State::kAbsent) {
-      if (const auto ended = group->Poll(milliseconds(1))) {
+      const auto ended = group->Poll(milliseconds(1));
+      if (ended && !NoteEnd(*ended)) {
         *error = ended->Describe();
         return false;
       }
@@ -107,10 +118,15 @@ bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
         *error = "interrupted; everything is stopped";
         return false;
       }
-      if (Now_ns(CLOCK_MONOTONIC) > begin_ns + kPatience_ns) {
-        *error = programs_[i] + " has not come up within " + Seconds(kPatience_ns);
+      const int64_t since_ns = Now_ns(CLOCK_MONOTONIC) - begin_ns;
+      if (since_ns < kTold_ns || ended) continue;
+      const std::string who = Describe(programs_[i], group->Find(programs_[i]).value_or(0));
+      if (since_ns > kPatience_ns) {
+        *error = "has not come up within " + Seconds(kPatience_ns) + ": " + who;
         return false;
       }
+      if (!told) std::cerr << "armada run: waiting for " << who << " to come up" << std::endl;
+      told = true;
     }
   }
   if (began_ns_ == 0) began_ns_ = Now_ns(CLOCK_MONOTONIC);
@@ -149,6 +165,7 @@ bool SteppedTime::NoteEnd(const ProcessExit& ended) {
 }
 
 bool SteppedTime::MayWaitOn() {
+  if (group_ == nullptr) return true;
   while (const auto ended = group_->Poll()) {
     if (!NoteEnd(*ended)) return false;
   }
@@ -171,24 +188,18 @@ bool SteppedTime::HolderGetsOn() {
   if (since_ns < kTold_ns) return true;
   const char state = StateOf(pid);
   const int64_t cpu_ns = ProcessorTime(pid) - turn_cpu_ns_;
-  const std::string who = programs_[holder - 1] + " (pid " + std::to_string(pid) + ")";
-  const bool stopped = state == 'T' || state == 't';
   const bool sleeps = state == 'S' || state == 'D';
+  const std::string& program = programs_[holder - 1];
   if (cpu_ns > kHung_cpu_ns || (sleeps && since_ns > kHung_ns)) {
     char at[32];
     std::snprintf(at, sizeof at, "%.3f", stepped_s());
-    trouble_ = who + " hangs: its turn at " + at + " s of stepped time has lasted " + Seconds(since_ns) +
-               ", " + Seconds(cpu_ns) + " of them on a processor";
+    trouble_ = program + " (pid " + std::to_string(pid) + ") hangs: its turn at " + at +
+               " s of stepped time has lasted " + Seconds(since_ns) + ", " + Seconds(cpu_ns) +
+               " of them on a processor";
     return false;
   }
-  if (!told_) {
-    told_ = true;
-    std::cerr << "armada run: waiting for " << who << ", which "
-              << (stopped  ? "is stopped by a signal"
-                  : sleeps ? "sleeps"
-                           : "gets no processor")
-              << std::endl;
-  }
+  if (!told_) std::cerr << "armada run: waiting for " << Describe(program, pid) << std::endl;
+  told_ = true;
   return true;
 }
 

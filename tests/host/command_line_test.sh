@@ -121,6 +121,28 @@ expect 0 '^ok' "$armada" check "$work/fleet.toml"
 "$armada" sim "$source/hil/scenarios/random_50.toml" --seconds 1 --set window_start_s=0.5 --trace "$work/large" >/dev/null
 expect 0 '^50 arms' "$armada" check "$work/large/scenario.toml"
 
+# Time, stepped or real.
+expect 2 'there are real' "$armada" run "$scenario" --time none --out "$work/none"
+expect 2 'pace is for --time stepped' "$armada" run "$scenario" --pace 0 --out "$work/none"
+expect 2 'allowed are 0' "$armada" run "$scenario" --time stepped --pace 1000 --out "$work/none"
+expect 2 "the kernel's CAN does not wait" "$armada" run "$scenario" --time stepped --bus socketcan --out "$work/none"
+expect 2 'ttl=1' "$armada" run "$scenario" --time stepped --set 'link.lcm_url="udpm://239.255.76.67:7667?ttl=1"' \
+  --set "link.key_file=\"$work/fleet.key\"" --out "$work/none"
+[ ! -e "$work/none" ] || fail "a refused run made its output directory"
+
+# A board beside something real refuses a clock that waits, and a key that is no secret.
+chmod 600 "$work/fleet.key"
+sed '0,/^bus = .*/s//bus = "socketcan:can0"/' "$work/keyed.toml" >"$work/real.toml"
+expect 78 'bus socketcan:can0 is of the kernel; stepped time is for emulated arms' "$bin/armada-arm" "$work/real.toml" \
+  --arm 1 --state "$work/state" --stepped-clock /dev/null:1
+expect 78 'ttl=1; stepped time is for emulated arms' "$bin/armada-arm" \
+  <(sed "s|^key_file.*|&\nlcm_url = 'udpm://239.255.76.67:7667?ttl=1'|; s|'fleet.key'|'$work/fleet.key'|" "$work/keyed.toml") \
+  --arm 1 --state "$work/state" --stepped-clock /dev/null:1
+expect 0 '^ok: fleet RMS' "$armada" run "$scenario" --seconds 6 --set window_start_s=5.0 --time stepped --pace 0 \
+  --out "$work/stepped"
+expect 78 'is of a run in stepped time, made of its seed, and no secret' "$bin/armada-arm" "$work/stepped/fleet.toml" --arm 1 \
+  --state "$work/state"
+
 # Processes in real time. This checks that they work together, not how late this machine is: under a sanitizer or load
 # the fleet may miss its criterion (exit 1), never its results.
 left_behind() { pgrep -f "$work/" >/dev/null; }
@@ -160,21 +182,23 @@ wait $run
 [ $? = 130 ] || fail "an interrupted run must exit 130: $(cat "$work/out")"
 wait_for 10 none_left || fail "Ctrl-C left processes behind: $(pgrep -af "$work/")"
 
-"$armada" run "$scenario" --seconds 60 --out "$work/crashed" >"$work/out" 2>&1 &
-run=$!
-wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
-pkill -KILL -f "armada-arm $work/.* --arm 3 "
-wait $run
-[ $? = 1 ] || fail "a run with a crashed arm must exit 1: $(cat "$work/out")"
-grep -q 'arm 3' "$work/out" || fail "the message must name arm 3: $(cat "$work/out")"
-wait_for 10 none_left || fail "a crash left processes behind: $(pgrep -af "$work/")"
+for time in real stepped; do
+  "$armada" run "$scenario" --seconds 60 --time $time --out "$work/crashed" >"$work/out" 2>&1 &
+  run=$!
+  wait_for 20 all_up || fail "$time: the arms did not start: $(cat "$work/out")"
+  pkill -KILL -f "armada-arm $work/.* --arm 3 "
+  wait $run
+  [ $? = 1 ] || fail "$time: a run with a crashed arm must exit 1: $(cat "$work/out")"
+  grep -q 'arm 3' "$work/out" || fail "$time: the message must name arm 3: $(cat "$work/out")"
+  wait_for 10 none_left || fail "$time: a crash left processes behind: $(pgrep -af "$work/")"
 
-"$armada" run "$scenario" --seconds 60 --out "$work/killed" >"$work/out" 2>&1 &
-run=$!
-wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
-kill -KILL $run
-wait $run 2>/dev/null
-wait_for 10 none_left || fail "a killed run left processes behind: $(pgrep -af "$work/")"
+  "$armada" run "$scenario" --seconds 60 --time $time --out "$work/killed" >"$work/out" 2>&1 &
+  run=$!
+  wait_for 20 all_up || fail "$time: the arms did not start: $(cat "$work/out")"
+  kill -KILL $run
+  wait $run 2>/dev/null
+  wait_for 10 none_left || fail "$time: a killed run left processes behind: $(pgrep -af "$work/")"
+done
 
 [ $failures = 0 ] && echo "command line: all as expected"
 exit $((failures > 0))

@@ -9,7 +9,7 @@ trap 'kill "$run" 2>/dev/null; wait; rm -rf "$work"' EXIT
 . "$source/tests/host/expect.sh"
 out=$work/run
 
-"$armada" run "$source/hil/scenarios/campaign.toml" --seconds 6 --out "$out" >"$work/run.txt" 2>&1 &
+"$armada" run "$source/hil/scenarios/campaign.toml" --seconds 6 --time stepped --out "$out" >"$work/run.txt" 2>&1 &
 run=$!
 for ((i = 0; i < 200; ++i)); do
   [ -p "$out/faults.hil" ] && break

@@ -39,7 +39,7 @@ class ProcessFaultsTest : public testing::Test {
     Clock* const clock = MachineClock::Get();
     epoch_ns_ = clock->Now() + 30 * kMs;
     const int64_t end_ns = epoch_ns_ + static_cast<int64_t>(kEnd_s * 1e9);
-    faults_.emplace(faults, std::map<int, std::string>{}, clock, false, epoch_ns_, end_ns);
+    faults_.emplace(faults, std::map<int, std::string>{}, clock, epoch_ns_, end_ns);
     std::vector<ProcessExit> ended;
     while (clock->Now() < end_ns) {
       const int64_t left_ns = std::clamp<int64_t>(faults_->Next() - clock->Now(), 0, 5 * kMs);

@@ -27,9 +27,11 @@ if [[ $* == *install* && -s $box/failures ]]; then
   exit 1
 fi
 END
-# Builds programs that note their arguments; `armada run` exits as the file `run_exit_code` says.
+# Builds programs that note their arguments; `armada run` exits as the file `run_exit_code` says. Makes the tests that the
+# file `tests` lists for ctest, which is the real one.
 stand_in cmake <<'END'
 echo "$*" >>"$box/cmake_calls"
+[[ $1 != --preset ]] || { mkdir -p "build/$2"; cp "$box/tests" "build/$2/CTestTestfile.cmake"; }
 [[ ! -f $box/build_is_broken ]] || { echo '[1/2] Building'; echo 'a.cpp:1: error: broken'; exit 1; }
 mkdir -p build/release/bin
 cat >build/release/bin/armada <<'PROGRAM'
@@ -51,6 +53,7 @@ given() {
   seq "$2" >failures
   echo "$3" >project/run_exit_code
   : >apt_calls
+  : >tests
 }
 
 # when ARGUMENT...: runs the script without input, from another folder; leaves $code and the file `output`.
@@ -69,6 +72,7 @@ check() { # DESCRIPTION CONDITION...
 }
 says() { grep -qF -- "$1" output; }
 silent_about() { ! says "$1"; }
+ends_with() { tail -n 2 output | grep -qE "$1"; }
 
 given '' 0 0
 when dance
@@ -82,6 +86,8 @@ when hil now
 check 'hil takes no arguments' test "$code" = 2
 when campaign --phases many
 check 'the phases of a campaign are a number' test "$code" = 2
+when campaign --phases 3 --guests
+check 'and --guests comes first' test "$code" = 2
 when campaign --seed
 check 'and an option of it has a value' test "$code" = 2
 when help
@@ -94,10 +100,14 @@ check 'and calls no apt-get when nothing is missing' test ! -s apt_calls
 check 'and makes the programs, not the tests' \
   grep -qx -- '--build --preset release --target bin/armada bin/armada-arm bin/armada-leader bin/armada-hil' cmake_calls
 
+check 'and tells the time of the stage' grep -qE '^build release +[0-9]+\.[0-9] s' output
+check 'and of all' ends_with '^in all +[0-9]+\.[0-9] s'
+
 given 'cmake gnuplot-nox' 0 0
 when build
 check 'a missing package is named with its reason' says 'cmake                configures the build'
 check 'packages that are there are not' silent_about 'ninja-build'
+check 'and its time is told' grep -qE '^packages +[0-9]+\.[0-9] s' output
 check 'only missing ones are installed, with no questions and no extras' grep -qx \
   'noninteractive -q -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends cmake gnuplot-nox' apt_calls
 check 'test tools are not needed to build' silent_about 'clang-tidy'
@@ -124,7 +134,7 @@ check 'without the progress lines' silent_about '[1/2]'
 given '' 0 0
 when demo --seed 7
 check 'the demo runs the paper for 20 s with further options' \
-  says 'armada run hil/scenarios/paper.toml --seconds 20 --out out/demo --seed 7'
+  says 'armada run hil/scenarios/paper.toml --seconds 20 --time stepped --out out/demo --seed 7'
 check 'and reports' says 'armada report out/demo'
 check 'and succeeds' test "$code" = 0
 
@@ -133,9 +143,12 @@ mkdir -p project/hil/vm
 printf '#!/bin/bash\necho "image into $ARMADA_VM_CACHE" >>%q\n' "$box/vm_calls" >project/hil/vm/image
 printf '#!/bin/bash\necho "hil $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' "$box/vm_calls" \
   >project/hil/vm/hil
-printf '#!/bin/bash\necho "campaign $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' \
-  "$box/vm_calls" >project/hil/vm/campaign
-chmod +x project/hil/vm/*
+mkdir -p project/hil/campaign
+for place in in_guests in_stepped_time; do
+  printf '#!/bin/bash\necho "%s $* $ARMADA_VM_CACHE" >>%q\necho figures\nexit "$(cat run_exit_code)"\n' $place \
+    "$box/vm_calls" >project/hil/campaign/$place
+done
+chmod +x project/hil/vm/* project/hil/campaign/*
 export ARMADA_VM_CACHE=$box/kernels
 given '' 0 0
 when hil
@@ -149,12 +162,50 @@ check 'a hil that fails is a failure' test "$code" = 1
 given '' 0 0
 : >vm_calls
 when campaign --phases 20 --seed 3
-check 'a campaign gets the kernels, then runs with its options' test "$(cat vm_calls)" = "$(printf '%s\n' \
-  "image into $box/kernels" "campaign build/release/bin out/processes --phases 20 --seed 3 $box/kernels")"
+check 'a campaign runs with its options' test "$(cat vm_calls)" = \
+  "in_stepped_time build/release/bin out/processes_in_stepped_time --phases 20 --seed 3 $box/kernels"
 check 'and prints the figures' says 'figures'
+: >vm_calls
+when campaign --guests --phases 20
+check 'in guests it gets the kernels first' test "$(cat vm_calls)" = "$(printf '%s\n' \
+  "image into $box/kernels" "in_guests build/release/bin out/processes_in_guests --phases 20 $box/kernels")"
 given '' 0 1
 when campaign
 check 'a campaign with a finding is a failure' test "$code" = 1
+given '' 0 0
+mkdir -p project/tests/core
+touch project/tests/core/CMakeLists.txt
+cat >tests <<'END'
+add_test(core.Supervisor.Stops true)
+add_test(core.Supervisor.Waits true)
+add_test(host.Report.IsWritten true)
+END
+builds() { [[ $(grep -o -- '--target .*' cmake_calls | sort -u) == "--target $1" ]]; }
+when test -R core
+check 'tests of a folder pass, in both builds' test "$(tail -n 1 output)" = 'tests: 4 passed, 0 failed'
+check 'and nothing else is built' builds tests/core/all
+check 'and the time of all stands before' ends_with '^in all +[0-9]+\.[0-9] s'
+rm cmake_calls
+when test -R core.Supervisor.Waits
+check 'one test of a folder alone' test "$(tail -n 1 output)" = 'tests: 2 passed, 0 failed'
+check 'builds that folder only, too' builds tests/core/all
+for regex in Report 'core|host' cor; do
+  rm cmake_calls
+  when test -R "$regex"
+  check "$regex is no folder: all is built" builds all
+done
+check 'and what matches is run' test "$(tail -n 1 output)" = 'tests: 4 passed, 0 failed'
+when test -R nothing
+check 'a pattern without a test fails' test "$code" = 1
+echo 'add_test(core.Supervisor.Breaks false)' >>tests
+when test -R core
+check 'a test that fails is a failure' test "$code" = 1
+check 'and is named' says 'core.Supervisor.Breaks'
+check 'and counted' test "$(tail -n 1 output)" = 'tests: 2 passed, 1 failed'
+given '' 0 0
+when fuzz --seconds 0
+check 'a fuzzer runs for some time' test "$code" = 2
+
 given 'qemu-system-x86' 0 0
 when hil
 check 'hil installs the virtual machine' says "qemu-system-x86      runs Debian's kernels"

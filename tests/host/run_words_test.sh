@@ -18,12 +18,12 @@ trap clean_up EXIT
 
 # start NAME SECONDS: a run in the background, in its time.
 start() {
-  : >"$work/$1.txt"
+  rm -f "$work/$1/lcm.log"  # of a run before
   "$armada" run "$scenario" --time real --seconds "$2" --out "$work/$1" >"$work/$1.txt" 2>&1 &
   run=$!
   wait_for 20 up "$1" || fail "$1 did not begin: $(cat "$work/$1.txt")"
 }
-up() { [ -s "$work/$1/lcm.log" ] && [ "$work/$1/lcm.log" -nt "$work/$1.txt" ]; }  # boards have ticked
+up() { [ -s "$work/$1/lcm.log" ]; }  # boards have ticked
 wait_for() { # wait_for SECONDS COMMAND...
   local deadline=$((SECONDS + $1))
   shift
@@ -83,7 +83,7 @@ start killed 20
 pkill -KILL -f "armada-arm $work/killed/.* --arm 2 "
 ended 1 killed
 says killed '^armada run: arm 2 .pid [0-9]+. was ended by signal 9 .SIGKILL.'
-says killed '^  the run broke off at [0-9.]+ s[a-z ]*: arm 2'
+says killed '^  the run broke off at [0-9.]+ s( before the start)?: arm 2'
 [ ! -e "$work/killed/metrics.json" ] || fail "a run that broke off has a result"
 wait_for 5 nothing_left killed || fail "a killed run leaves behind: $(left_behind killed)"
 

@@ -216,9 +216,9 @@ def main():
         log = stack.enter_context(open(folder / "log.txt", "w"))
         stack.enter_context(running(
             armada, "run", source / "hil/scenarios/paper.toml", "--seconds", 600, "--out", folder / "run",
-            "--bus", "udp", "--set", f"link.lcm_url={URL}", stop=signal.SIGINT, stdout=log, stderr=log))
-        # The run writes its inputs before it starts lcm-logger.
-        wait_for("lcm-logger of the run", (folder / "run/lcm.log").exists)
+            "--time", "stepped", "--set", f"link.lcm_url={URL}", stop=signal.SIGINT, stdout=log, stderr=log))
+        # The run writes its inputs before its log.
+        wait_for("log of the run", (folder / "run/lcm.log").exists)
         stack.enter_context(running(armada, "spy", folder / "run/fleet.toml", stdout=log, stderr=log))
         spy = wait_for("lcm-spy's window", lambda: window("LCM Spy"))
         rows = wait_for("15 channels and their types", lambda: rows_of_channels(spy, folder))

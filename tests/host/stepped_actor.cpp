@@ -43,8 +43,8 @@ class Actor {
  private:
   int64_t Number(int index) const { return begin_ns_ + std::stoll(words_[3 + index]) * kMs; }
   void Log(const char* what, uint32_t number, int64_t at_ns) {
-    std::fprintf(log_, "%.3f %s %u %.3f\n", static_cast<double>(clock_->Now() - begin_ns_) / kMs, what, number,
-                 static_cast<double>(at_ns - begin_ns_) / kMs);
+    std::fprintf(log_, "%.3f %s %u %.3f\n", static_cast<double>(clock_->Now() - begin_ns_) / kMs, what,
+                 number, static_cast<double>(at_ns - begin_ns_) / kMs);
   }
   void Send(uint32_t number) {
     CanFrame frame;

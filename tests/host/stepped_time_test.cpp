@@ -1,5 +1,5 @@
-// Stepped time with real processes on a real network: the order of what happens, its independence of the machine,
-// and what is said when a program dies or hangs.
+// Stepped time with real processes on a real network: the order of what happens, its independence of the
+// machine, and what is said when a program dies or hangs.
 
 #include "host/run/stepped_time.h"
 
@@ -14,8 +14,8 @@
 #include <sstream>
 #include <thread>
 
-#include "firmware/clock/machine_clock.h"
 #include "firmware/can/open_bus.h"
+#include "firmware/clock/machine_clock.h"
 #include "tests/link/private_network_fixture.h"
 #include "tests/support/temp_dir.h"
 
@@ -78,7 +78,8 @@ TEST_F(SteppedTimeTest, WhatIsSentArrivesInTheSameInstantWhoeverReadsWhen) {
   const auto ended = PassUntil(60);
   ASSERT_EQ(ended.size(), 3u);
   EXPECT_EQ(LogOf("speaker"), "10.000 spoke 0 10.000\n20.000 spoke 1 20.000\n30.000 spoke 2 30.000\n");
-  EXPECT_EQ(LogOf("answerer"), "10.000 answered 0 10.000\n20.000 answered 1 20.000\n30.000 answered 2 30.000\n");
+  EXPECT_EQ(LogOf("answerer"),
+            "10.000 answered 0 10.000\n20.000 answered 1 20.000\n30.000 answered 2 30.000\n");
   // Read later, each has the time at which it came.
   EXPECT_EQ(LogOf("reader"),
             "25.000 read 0 10.000\n25.000 read 100 10.000\n25.000 read 1 20.000\n25.000 read 101 20.000\n"
@@ -86,8 +87,8 @@ TEST_F(SteppedTimeTest, WhatIsSentArrivesInTheSameInstantWhoeverReadsWhen) {
   EXPECT_EQ(time_->lost(), 0u);
 }
 
-// Programs whose time has come run before those that a message wakes: the speaker of slot 2 has spoken, and the
-// reader of slot 3 has read, before the answerer of slot 1 gets the word.
+// Programs whose time has come run before those that a message wakes: the speaker of slot 2 has spoken, and
+// the reader of slot 3 has read, before the answerer of slot 1 gets the word.
 TEST_F(SteppedTimeTest, InOneInstantDeadlinesComeBeforeMessages) {
   Begin();
   Start("answerer", {"answer", "15"});
@@ -143,7 +144,8 @@ TEST_F(SteppedTimeTest, AProgramWithoutTurnsFindsLaterWhatHasCome) {
   PassUntil(10);
   ASSERT_TRUE(time_->Suspend("answerer", false));
   PassUntil(100);
-  EXPECT_EQ(LogOf("answerer"), "10.000 answered 0 10.000\n25.000 answered 1 20.000\n30.000 answered 2 30.000\n");
+  EXPECT_EQ(LogOf("answerer"),
+            "10.000 answered 0 10.000\n25.000 answered 1 20.000\n30.000 answered 2 30.000\n");
 }
 
 TEST_F(SteppedTimeTest, AProgramThatIsKilledOnOrderLeavesTheOthersAlone) {
@@ -172,7 +174,24 @@ TEST_F(SteppedTimeTest, AProgramThatStartsAnewJoinsAtThatTime) {
   Start("answerer", {"answer", "50"});
   Await();
   PassUntil(100);
-  EXPECT_EQ(LogOf("answerer"), "10.000 answered 0 10.000\n4.000 answered 1 4.000\n14.000 answered 2 14.000\n");
+  EXPECT_EQ(LogOf("answerer"),
+            "10.000 answered 0 10.000\n5.000 answered 1 5.000\n15.000 answered 2 15.000\n");
+}
+
+TEST_F(SteppedTimeTest, OneMayStartAnewWhileAnotherThatWasKilledHasNotEnded) {
+  Begin();
+  Start("answerer", {"answer", "50"});
+  Start("speaker", {"speak", "10", "3"});
+  Await();
+  PassUntil(15);
+  time_->Kill(&group_, "answerer");
+  time_->Pass(&group_, {}, time_->Now() + kMs);
+  time_->Kill(&group_, "speaker");
+  Start("answerer", {"answer", "50"});
+  Await();
+  const auto ended = time_->Pass(&group_, {}, time_->Now() + kMs);
+  ASSERT_TRUE(ended.has_value());
+  EXPECT_EQ(ended->name, "speaker");
 }
 
 TEST_F(SteppedTimeTest, WhoDiesIsNamedWithinASecond) {

@@ -1,9 +1,9 @@
-"""Draws the runs of hil/vm/campaign: which board is killed, stopped, cut off or slowed down, and when.
+"""Draws the runs of the campaigns of processes: which board is killed, stopped, cut off or slowed down, and when.
 
-usage: campaign_plan.py SEED PHASES DIR [RUN]    writes DIR/<run>_<policy>.toml until PHASES kills and stops are planned;
-                                                 with RUN only that run
+usage: plan.py guests|stepped SEED PHASES DIR [RUN]    writes DIR/<run>_<policy>.toml until PHASES kills and stops are
+                                                       planned; with RUN only that run
 
-The same seed gives the same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
+In stepped time no link can be cut, since the user-space bus has none, and no program is slow. The same seed gives the same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
 """
 
 import itertools
@@ -25,8 +25,9 @@ KINDS = (
     (10, "controller_stops", (0.001, 0.030)),
     (5, "controller_restarts", (0.130, 0.400)),
 )
-BUS_DOWN = 0.15  # share of the boards that are cut off from their drives in place of that
-EXTRA = 0.25  # share of the runs with a hog that must change nothing; that end with one above the boards; whose leader dies
+BUS_DOWN = {"guests": 0.15, "stepped": 0.0}  # share of the boards that are cut off from their drives in place of that
+LEADER_DIES = 0.25  # share of the runs
+HOG = {"guests": 0.25, "stepped": 0.0}  # share of the runs with a hog that must change nothing; with one above the boards
 HOLD = 0.3  # share of the runs in which a stopped neighbour stops an arm
 
 
@@ -41,17 +42,18 @@ def fault(kind, at_s, until_s=None, arm=0, value=None):
     return "\n".join(lines) + "\n"
 
 
-def draw(seed, run):
+def draw(where, seed, run):
     """(policy, scenario, number of kills and stops) of a run."""
     rng = random.Random(f"{seed}/{run}")
+    hog = HOG[where]
     policy = "hold" if rng.random() < HOLD else "carry_on"
-    end = rng.choices(("none", "hog", "leader"), weights=(1 - 2 * EXTRA, EXTRA, EXTRA))[0]
+    end = rng.choices(("none", "hog", "leader"), weights=(1 - hog - LEADER_DIES, hog, LEADER_DIES))[0]
     victims = rng.sample(ARMS, len(ARMS) if end == "none" else 5)  # some are left to see the end
-    quiet_hog_after = rng.choice(victims) if rng.random() < EXTRA else None
+    quiet_hog_after = rng.choice(victims) if rng.random() < hog else None
     faults, count, t_s, end_s = [], 0, SETTLED_S, 0.0
     for arm in victims:
         t_s += rng.uniform(*GAP_S)
-        if rng.random() < BUS_DOWN:
+        if rng.random() < BUS_DOWN[where]:
             faults.append(fault("bus_down", t_s, arm=arm))
         else:
             _, kind, lengths = rng.choices(KINDS, weights=[kind[0] for kind in KINDS])[0]
@@ -69,7 +71,7 @@ def draw(seed, run):
     elif end == "leader":
         faults.append(fault("leader_dies", t_s))
     seconds = max(t_s, end_s) + 0.3
-    head = f"""# Seed {seed}, run {run} of hil/vm/campaign.
+    head = f"""# ./run campaign {"--guests " if where == "guests" else ""}--seed {seed} --only {run}
 
 name = "campaign_{run}"
 base = "../hil/scenarios/benign.toml"
@@ -80,15 +82,15 @@ window_start_s = {SETTLED_S}
     return policy, head + "\n".join(faults), count
 
 
-def main(seed, phases, folder, run=None):
+def main(where, seed, phases, folder, run=None):
     planned = 0
     for number in itertools.count() if run is None else [run]:
         if planned >= phases:
             break
-        policy, scenario, count = draw(seed, number)
+        policy, scenario, count = draw(where, seed, number)
         (folder / f"{number:04d}_{policy}.toml").write_text(scenario)
         planned += count
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]), pathlib.Path(sys.argv[3]), *map(int, sys.argv[4:]))
+    main(sys.argv[1], sys.argv[2], int(sys.argv[3]), pathlib.Path(sys.argv[4]), *map(int, sys.argv[5:]))

@@ -1,10 +1,11 @@
-"""Judges the runs of hil/vm/campaign. It knows the boards' messages and the drives' frames, and no code of the boards.
+"""Judges runs of the campaigns of processes. It knows the boards' messages and the drives' frames, and no code of the
+boards.
 
-usage: campaign_judge.py judge GUEST_DIR    each run in it: complaints, figures.json; a run without complaints is removed
-       campaign_judge.py sum DIR SEED       one line of figures over all guests
+usage: judge.py judge DIR        the run in DIR, or each in it: complaints, figures; a run without complaints is removed
+       judge.py sum DIR SEED     one line of figures over all that was judged in DIR
 
-Witnesses: candump of can-utils, at the drives' end of each bus; lcm-logger for what the boards say; hil.json for when a
-drive's power went off, which no frame tells in time.
+Witnesses: in guests candump of can-utils, at the drives' end of each bus, in stepped time the emulation's log; the log of
+LCM for what the boards say; hil.json for when a drive's power went off, which no frame tells in time.
 """
 
 import bisect
@@ -76,9 +77,9 @@ class Fleet:
 
 
 class Bus:
-    """What came to an arm's drives, by candump: times of the frames to each node, and of its torques."""
+    """What came to an arm's drives: times of the frames to each node, and of its torques."""
 
-    LINE = re.compile(r"\((\d+)\.(\d{6})\) drives(\d+) ([0-9A-F]{3})#(R\d?|[0-9A-F]*)\s*$")
+    LINE = re.compile(r"\((\d+)\.(\d{6})\) (?:drives|can)(\d+) ([0-9A-F]{3})#(R\d?|[0-9A-F]*)\s*$")
 
     def __init__(self):
         self.to_node = collections.defaultdict(list)
@@ -86,13 +87,13 @@ class Bus:
         self.arming = []  # frames by which a drive could come on again
 
 
-def read_buses(path, epoch_ns, fleet, complain):
+def read_buses(paths, epoch_ns, fleet, complain):
     buses = {arm: Bus() for arm in fleet.arms}
-    with open(path, encoding="ascii") as log:
-        for line in log:
+    for path in paths:
+        for line in path.read_text(encoding="ascii").splitlines():
             match = Bus.LINE.match(line)
             if not match:
-                complain(f"a line of candump.log is none: {line!r}")
+                complain(f"a line of {path.name} is none: {line!r}")
                 continue
             t_s = (int(match[1]) * 10**9 + int(match[2]) * 1000 - epoch_ns) * 1e-9
             arm, can_id, data = int(match[3]), int(match[4], 16), match[5]
@@ -173,7 +174,8 @@ class Judge:
             said = (self.run / "output.txt").read_text(errors="replace")[-1500:]
             return self.complain(f"the run did not come to its end: {error}\n{said}")
         self.end_s = self.plan["seconds"]
-        self.buses = read_buses(self.run / "candump.log", hil["epoch_wall_ns"], self.fleet, self.complain)
+        logs = [*self.run.glob("candump.log")] or sorted(self.run.glob("can_*.log"))
+        self.buses = read_buses(logs, hil["epoch_wall_ns"], self.fleet, self.complain)
         self.ticks = read_telemetry(self.run / "lcm.log", hil["epoch_ns"])
         self.powers = {arm["id"]: arm["drives"] for arm in hil["arms"]}
         self.made(metrics.get("process_faults", []))
@@ -346,9 +348,10 @@ class Judge:
                 self.complain(f"arm {arm}: holds {1e3 * (first - at_s):.1f} ms after {at_s:.6f} s")
 
 
-def judge_guest(folder):
+def judge_all(folder):
     fleet = Fleet()
-    runs = sorted(path.parent for path in folder.glob("*/plan.toml"))
+    one = (folder / "plan.toml").exists()
+    runs = [folder] if one else sorted(path.parent for path in folder.glob("*/plan.toml"))
     counts, worst, bad = collections.Counter(), {}, 0
     for run in runs:
         judge = Judge(run, fleet)
@@ -357,19 +360,20 @@ def judge_guest(folder):
         take_worst(worst, judge.worst)
         if judge.complaints:
             bad += 1
-            seed, number = re.match(r"# Seed (\d+), run (\d+)", (run / "plan.toml").read_text()).groups()
             for complaint in judge.complaints[:10]:
-                print(f"seed {seed}, run {number} ({judge.policy}): {complaint}", file=sys.stderr)
-            print(f"  its files are in {run}; again: ./run campaign --seed {seed} --only {number}", file=sys.stderr)
+                print(f"run {run.name}: {complaint}", file=sys.stderr)
+            again = (run / "plan.toml").read_text().splitlines()[0].removeprefix("# ")
+            print(f"  its files are in {run}; again: {again}", file=sys.stderr)
         else:
             shutil.rmtree(run)
-    (folder / "figures.json").write_text(json.dumps({"runs": len(runs), "counts": counts, "worst": worst}))
+    figures = folder.with_name(f"{folder.name}_figures.json") if one else folder / "figures.json"
+    figures.write_text(json.dumps({"runs": len(runs), "counts": counts, "worst": worst}))
     return 1 if bad or not runs else 0
 
 
 def sum_up(folder, seed):
     runs, counts, worst = 0, collections.Counter(), {}
-    for path in folder.glob("*/figures.json"):
+    for path in [*folder.glob("*/figures.json"), *folder.glob("*_figures.json")]:
         figures = json.loads(path.read_text())
         runs += figures["runs"]
         counts += collections.Counter(figures["counts"])
@@ -388,5 +392,5 @@ def sum_up(folder, seed):
 
 if __name__ == "__main__":
     if sys.argv[1] == "judge":
-        sys.exit(judge_guest(pathlib.Path(sys.argv[2])))
+        sys.exit(judge_all(pathlib.Path(sys.argv[2])))
     sys.exit(sum_up(pathlib.Path(sys.argv[2]), sys.argv[3]))
