@@ -40,27 +40,23 @@ std::string StopText(const telemetry_t& stop, const telemetry_t& last, double at
   return text;
 }
 
-/// Collects what the arm misses, and when the first and the last of it showed.
+/// Collects what the arm misses, the most telling first, and when that showed.
 class Words {
  public:
   void Add(const std::string& kind, std::optional<double> at_s, const std::string& text) {
     if (text_.empty()) kind_ = kind;
     text_ += (text_.empty() ? "" : ", ") + text;
-    if (!at_s) return;
-    at_s_ = std::min(at_s_.value_or(*at_s), *at_s);
-    last_s_ = std::max(last_s_.value_or(*at_s), *at_s);
+    if (!at_s_) at_s_ = at_s;
   }
   bool empty() const { return text_.empty(); }
   const std::string& kind() const { return kind_; }
   const std::string& text() const { return text_; }
   std::optional<double> at_s() const { return at_s_; }
-  std::optional<double> last_s() const { return last_s_; }
 
  private:
   std::string kind_;
   std::string text_;
   std::optional<double> at_s_;
-  std::optional<double> last_s_;
 };
 
 std::string ErrorText(const ArmMetrics& arm, const ScenarioConfig& scenario) {
@@ -111,13 +107,12 @@ std::string LateText(const RunEvidence& evidence, size_t index, double from_s, d
       .Text(timing);
 }
 
-// What was late or lost on the board between the first miss and the last, and just before; where nothing was,
-// earlier; empty: nothing ever.
-std::string MomentText(const RunEvidence& evidence, size_t index, double first_s, double last_s) {
-  const std::string off = DrivesOff(evidence.arms[index].bench, last_s);
-  std::string late = LateText(evidence, index, first_s - kMoment_s, last_s + kTelling_s);
+// What was late or lost on the board at that moment; where nothing was, before it; empty: nothing ever.
+std::string MomentText(const RunEvidence& evidence, size_t index, double at_s) {
+  const std::string off = DrivesOff(evidence.arms[index].bench, at_s);
+  std::string late = LateText(evidence, index, at_s - kMoment_s, at_s + kTelling_s);
   if (late.empty()) {
-    late = LateText(evidence, index, -kMoment_s, first_s);
+    late = LateText(evidence, index, -kMoment_s, at_s);
     if (!late.empty()) late = "before: " + late;
   }
   return off.empty() || late.empty() ? off + late : off + "; " + late;
@@ -154,8 +149,7 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
   const double end_s = arm == nullptr ? evidence.broke_off_s : evidence.scenario->seconds;
   const bool silent = last_s < end_s - kMoment_s;
   if (silent) text += "; last heard at " + TimeText(last_s);
-  if (const std::string late = MomentText(evidence, index, moment_s, words.last_s().value_or(last_s));
-      !late.empty()) {
+  if (const std::string late = MomentText(evidence, index, moment_s); !late.empty()) {
     text += "; " + late;
   } else if (!silent) {
     text += "; nothing was late or lost on its board before";
@@ -169,23 +163,24 @@ std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
   if (!board.is_object()) return std::nullopt;
   std::string text;
   const auto add = [&](int64_t count, const std::string& words) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + words;
+    if (count > 0) text += (text.empty() ? "" : ", ") + words + " " + std::to_string(count);
   };
   const auto count = [&](const char* section, const char* key) {
     return board.at(section).at(key).get<int64_t>();
   };
-  add(count("timing", "missed_ticks"), "ticks missed");
-  add(count("timing", "incomplete_samples"), "without every sample");
-  add(count("timing", "unsent_ticks"), "whose torques were not on the wire in time");
-  add(count("bus", "can_dropped") + count("bus", "can_dropped_late"), "CAN frames dropped");
-  add(count("bus", "can_receive_overflowed"), "CAN frames overflowed");
+  add(count("timing", "missed_ticks"), "missed ticks");
+  add(count("timing", "incomplete_samples"), "ticks without every sample");
+  add(count("timing", "unsent_ticks"), "ticks whose torques were not on the wire in time");
+  add(count("bus", "can_dropped") + count("bus", "can_dropped_late"), "dropped CAN frames");
+  add(count("bus", "can_receive_overflowed"), "overflowed CAN frames");
   add(count("bus", "can_errors"), "CAN errors");
-  add(count("bus", "lcm_overflowed"), "LCM messages overflowed");
-  add(count("bus", "lcm_rejected"), "LCM messages rejected");
+  add(count("bus", "lcm_overflowed"), "overflowed LCM messages");
+  add(count("bus", "lcm_rejected"), "rejected LCM messages");
   for (const Json& sender : board.at("bus").at("lcm_heard")) {
     const int from = sender.at("from").get<int>();
     add(sender.at("missed").get<int64_t>(),
-        "messages of " + (from == 0 ? "the leader" : "arm " + std::to_string(from)) + " missed");
+        std::string("missed messages of ") +
+            (from == 0 ? "the leader:" : "arm " + std::to_string(from) + ":"));
   }
   if (text.empty()) return std::nullopt;
   const int id = evidence.scenario->fleet.arms[index].id;

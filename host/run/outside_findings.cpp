@@ -89,8 +89,9 @@ std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<S
     findings.push_back({"stall", 0, evidence.TimeOf(stall->begin_ns), StallText(evidence, *stall)});
   if (listed != stalls.end()) {
     char text[96];
-    std::snprintf(text, sizeof text, "%zu further stalls of at most %.3f s",
-                  static_cast<size_t>(stalls.end() - listed), Length_s(*listed));
+    const auto count = static_cast<size_t>(stalls.end() - listed);
+    std::snprintf(text, sizeof text, "%zu further %s of at most %.3f s", count,
+                  count == 1 ? "stall" : "stalls", Length_s(*listed));
     findings.push_back({"stall", 0, std::nullopt, text});
   }
   return findings;

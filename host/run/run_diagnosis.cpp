@@ -90,7 +90,12 @@ std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
   const bool from_outside = !findings.empty();
   Append(std::move(failures), &findings);
   const std::vector<RunFinding> programs = ProgramFindings(evidence);
-  if (!from_outside && boards_in_time && losses.empty() && programs.empty())
+  const bool programs_in_time =
+      std::none_of(programs.begin(), programs.end(), [&](const RunFinding& program) {
+        return program.at_s.value_or(first_s) > first_s - kMoment_s &&
+               program.at_s.value_or(first_s) < last_s;
+      });
+  if (!from_outside && boards_in_time && losses.empty() && programs_in_time)
     findings.push_back({"none", 0, std::nullopt, NothingLate(evidence)});
   Append(std::move(losses), &findings);
   Append(programs, &findings);

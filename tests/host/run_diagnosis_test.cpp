@@ -164,6 +164,19 @@ TEST_F(DiagnosisTest, AnErrorNamesTheCriterionTheTimeAndWhatWasLateThen) {
       "s; woken 8.2 ms late at 5.900 s, 4.4 ms from sample to torque at 5.950 s");
 }
 
+TEST_F(DiagnosisTest, OfAnArmThatStoppedItIsThatMomentWhateverItsErrorWas) {
+  Stop(3, 800, ControllerState::kSafeStop, Cause::kTorquesUnsent);
+  MetricsOf(3).max_m = 0.0352;
+  MetricsOf(3).beyond_at_s = 5.0;
+  TicksOf(3)[795].sample_to_torque_us = 4400;
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, "stopped");
+  EXPECT_NEAR(*findings[0].at_s, 8.0, 1e-9);
+  EXPECT_THAT(findings[0].text, HasSubstr("35.2 mm"));
+  EXPECT_THAT(findings[0].text, HasSubstr("; 4.4 ms from sample to torque at 7.950 s"));
+}
+
 TEST_F(DiagnosisTest, ACauseOfLongBeforeIsToldWhereTheMomentHasNone) {
   MetricsOf(3).max_m = 0.0352;
   MetricsOf(3).beyond_at_s = 6.0;
@@ -214,10 +227,10 @@ TEST_F(DiagnosisTest, LossesOfABoardAndOfTheEmulationAreTold) {
       {"timing", {{"pacing_us", {{"max", 41234.0}}}, {"latest_at_s", 8.9}, {"realtime_priority", true}}}};
   const auto findings = Result();
   ASSERT_EQ(findings.size(), 4u);
-  EXPECT_EQ(
-      findings[1].text,
-      "arm 3 in the whole run: 4 without every sample, 2 whose torques were not on the wire in time, 7 CAN "
-      "frames dropped, 5 messages of the leader missed");
+  EXPECT_EQ(findings[1].text,
+            "arm 3 in the whole run: ticks without every sample 4, ticks whose torques were not on the wire "
+            "in time 2, "
+            "dropped CAN frames 7, missed messages of the leader: 5");
   EXPECT_EQ(findings[2].text, "the emulation (armada-hil) was 41.2 ms late at 8.900 s");
   EXPECT_EQ(findings[3].kind, "priority");
 }

@@ -19,7 +19,7 @@ trap clean_up EXIT
 # start NAME SECONDS: a run in the background, in its time.
 start() {
   rm -f "$work/$1/lcm.log"  # of a run before
-  "$armada" run "$scenario" --time real --seconds "$2" --set window_start_s=1.0 --out "$work/$1" >"$work/$1.txt" 2>&1 &
+  "$armada" run "$scenario" --time real --seconds "$2" --out "$work/$1" >"$work/$1.txt" 2>&1 &
   run=$!
   wait_for 20 up "$1" || fail "$1 did not begin: $(cat "$work/$1.txt")"
 }
@@ -74,12 +74,12 @@ PY
 nothing_left stalled || fail "a run leaves behind: $(left_behind stalled)"
 
 # A run that is killed leaves nothing; the next one in its folder works at once, and tells whose end ended it.
-start killed 60
+start killed 20
 [ -p "$work/killed/faults.run" ] || fail "no pipe"
 kill -KILL "$run"
 wait "$run" 2>/dev/null
 mv "$work/killed.txt" "$work/killed_first.txt"
-start killed 60
+start killed 20
 pkill -KILL -f "armada-arm $work/killed/.* --arm 2 "
 ended 1 killed
 says killed '^armada run: arm 2 .pid [0-9]+. was ended by signal 9 .SIGKILL.'
@@ -92,7 +92,7 @@ run_on_small_disk() { # run_on_small_disk SIZE
   mkdir -p "$work/disk"
   unshare --mount sh -c 'mount -t tmpfs -o size="$1" none "$2" && shift 2 && exec "$@"' sh "$1" "$work/disk" \
     bash -c '"$@"; code=$?; cp -r "$0" "$0.kept"; exit $code' "$work/disk" \
-    "$armada" run "$scenario" --time real --seconds 4 --set window_start_s=1.0 --out "$work/disk/run"
+    "$armada" run "$scenario" --time real --seconds 4 --out "$work/disk/run"
 }
 if [ "$(id -u)" = 0 ] && unshare --mount true 2>/dev/null; then
   for size in 16k 400k; do
