@@ -15,6 +15,7 @@
 #include "firmware/app/heap_counter.h"
 #include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
+#include "firmware/app/standard_files.h"
 #include "firmware/can/open_bus.h"
 #include "hil/active_drive.h"
 #include "hil/fault_meaning.h"
@@ -234,6 +235,7 @@ int Run(const Options& options) {
 }  // namespace armada
 
 int main(int argc, char** argv) {
+  armada::OpenStandardFiles();
   armada::Options options;
   armada::CommandLine app(
       "Emulates a scenario's arms and drives in real time, on the buses that its fleet names.", "armada-hil");

@@ -14,6 +14,7 @@
 #include "firmware/app/link_identity.h"
 #include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
+#include "firmware/app/standard_files.h"
 #include "firmware/link/channels.h"
 #include "firmware/link/lcm_endpoint.h"
 #include "firmware/link/messages.h"
@@ -160,6 +161,7 @@ int Run(const Options& options) {
 }  // namespace armada
 
 int main(int argc, char** argv) {
+  armada::OpenStandardFiles();
   armada::Options options;
   armada::CommandLine app("Publishes the leader of a scenario on LCM, channel LEADER.", "armada-leader");
   app.add_option("SCENARIO", options.scenario, "scenario file")->required();

@@ -5,6 +5,7 @@
 
 #include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
+#include "firmware/app/standard_files.h"
 #include "hil/scenario_file.h"
 #include "host/ablate/ablate_command.h"
 #include "host/campaign/campaign_command.h"
@@ -33,6 +34,7 @@ std::string ProgramDirectory() {
 
 int main(int argc, char** argv) {
   using namespace armada;
+  OpenStandardFiles();
   CommandLine app("Armada: several different robot arms follow one moving leader in task space.", "armada");
   app.require_subcommand(1);
   int code = kExitOk;

@@ -72,8 +72,8 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
 
 /// The child's side of Start. Other threads of the parent may have held any lock at the fork, so only
 /// async-signal-safe calls are allowed. All signals are blocked on entry.
-[[noreturn]] void Become(char* const* argv, char* const* environment, int null_fd, int log_fd, int error_fd,
-                         pid_t parent) {
+[[noreturn]] void Become(char* const* argv, char* const* environment, int null_fd, int log_fd, int kept_fd,
+                         int error_fd, pid_t parent) {
   // The parent may have died before prctl took effect; then no signal comes and the child must see it itself.
   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent) {
     _exit(127);
@@ -83,6 +83,7 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
   }
   // An inherited socket would keep the parent's address in use. Best effort: it needs Linux 5.11.
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  if (kept_fd >= 0) fcntl(kept_fd, F_SETFD, 0);
   sigset_t none;
   sigemptyset(&none);
   const bool ready = setpgid(0, 0) == 0 && dup2(null_fd, STDIN_FILENO) >= 0 &&
@@ -139,10 +140,11 @@ ProcessGroup::ProcessGroup() {
   g_stop_requested = false;
   struct sigaction action {};
   action.sa_handler = OnSignal;
-  action.sa_flags = SA_RESTART;
   for (size_t i = 0; i < kSignals.size(); ++i) {
     sigaction(kSignals[i], nullptr, &former_actions_[i]);
     if (kSignals[i] != SIGHUP || former_actions_[i].sa_handler != SIG_IGN) {
+      // Only the end of a program may leave a write to a full terminal or pipe waiting.
+      action.sa_flags = kSignals[i] == SIGCHLD ? SA_RESTART : 0;
       sigaction(kSignals[i], &action, nullptr);
     }
   }
@@ -201,7 +203,8 @@ bool ProcessGroup::Start(const ProcessSpec& spec, std::string* error) {
   pthread_sigmask(SIG_BLOCK, &all, &former);
   const pid_t pid = fork();
   if (pid == 0) {
-    Become(argv.data(), environment.data(), null_fd.get(), log_fd.get(), error_sink.get(), self);
+    Become(argv.data(), environment.data(), null_fd.get(), log_fd.get(), spec.kept_fd, error_sink.get(),
+           self);
   }
   const int fork_errno = errno;
   pthread_sigmask(SIG_SETMASK, &former, nullptr);

@@ -17,6 +17,7 @@ struct ProcessSpec {
   std::vector<std::string> argv;         ///< argv[0] is the path of the executable; PATH is not searched
   std::vector<std::string> environment;  ///< "NAME=value": added to this process's, or in place of its value
   std::string log_path;                  ///< takes standard output and error; emptied first, some room kept
+  int kept_fd = -1;                      ///< a descriptor of ours that it has, too, under the same number
 };
 
 /// How a program ended.

@@ -16,6 +16,7 @@
 #include "firmware/app/loop_report.h"
 #include "firmware/app/program_clock.h"
 #include "firmware/app/realtime.h"
+#include "firmware/app/standard_files.h"
 #include "firmware/app/whole_file.h"
 #include "firmware/can/open_bus.h"
 
@@ -138,6 +139,7 @@ int Run(const Options& options) {
 }  // namespace armada
 
 int main(int argc, char** argv) {
+  armada::OpenStandardFiles();
   armada::Options options;
   armada::CommandLine app(
       "Controller of one arm of a fleet: 100 Hz, fixed memory. It comes up in MONITOR, with its drives off, "

@@ -32,13 +32,14 @@ std::unique_ptr<Clock> OpenProgramClock(const std::string& stepped, const LcmUrl
   for (const std::string& bus : buses) {
     if (const std::string why = WhyReal(bus); !why.empty()) return refuse(why + kEmulationOnly);
   }
-  const size_t colon = stepped.rfind(':');
+  int descriptor = 0;
   int slot = 0;
-  if (colon == std::string::npos ||
-      std::from_chars(stepped.data() + colon + 1, stepped.data() + stepped.size(), slot).ec != std::errc()) {
-    return refuse("must be FILE:SLOT");
-  }
-  return SteppedClock::Attach(stepped.substr(0, colon), slot, error);
+  const char* const end = stepped.data() + stepped.size();
+  const auto first = std::from_chars(stepped.data(), end, descriptor);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return refuse("must be FD:SLOT");
+  const auto second = std::from_chars(first.ptr + 1, end, slot);
+  if (second.ec != std::errc() || second.ptr != end) return refuse("must be FD:SLOT");
+  return SteppedClock::Attach(descriptor, slot, error);
 }
 
 }  // namespace armada

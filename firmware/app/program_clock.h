@@ -11,7 +11,7 @@ namespace armada {
 
 /// What `--stepped-clock` is, for the help of the programs that take it.
 inline constexpr const char* kSteppedClockHelp =
-    "FILE:SLOT: take the time of a run in stepped time, as `armada run --time stepped` passes it on. "
+    "FD:SLOT: take the time of a run in stepped time, as `armada run --time stepped` passes it on. "
     "Emulation "
     "only: refused beside a bus of the kernel or a network beyond this host";
 

@@ -21,15 +21,14 @@ constexpr size_t kMaxDatagramBytes = 1024;
 constexpr int kMaxDropped = 64;
 
 /// Time of reception: the kernel's, which may be long before the datagram is taken.
-int64_t ReceptionTime_ns(const msghdr& message, const Clock& clock) {
+int64_t ReceptionTime_ns(int socket, const msghdr& message, Clock* clock) {
+  const int64_t now_ns = clock->Now();
+  const int64_t wall_ns = clock->WallNow();
+  timespec stamp = Timespec(wall_ns);
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
-  if (header == nullptr || header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_TIMESTAMPNS) {
-    return clock.Now();
-  }
-  timespec stamp{};
-  std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-  const int64_t now_ns = clock.Now();
-  return MonotonicOfWall(clock.WallTimeOf(stamp), clock.WallNow(), now_ns);
+  if (header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_TIMESTAMPNS)
+    std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
+  return MonotonicOfWall(clock->ArrivalOf(socket, stamp), wall_ns, now_ns);
 }
 
 bool SetOption(const UniqueFd& socket, int level, int option, int value) {
@@ -148,9 +147,9 @@ UdpCanBus::Taken UdpCanBus::TakeDatagram(CanFrame* frame) {
   ssize_t size = 0;
   do {
     size = recvmsg(receiver_.get(), &message, MSG_DONTWAIT);
-  } while (size < 0 && errno == EAGAIN && clock_->Took(receiver_.get(), 0));
+  } while (size < 0 && errno == EAGAIN && clock_->MoreToCome(receiver_.get()));
   if (size < 0) return errno == EAGAIN || errno == EINTR ? Taken::kNothing : Taken::kDown;
-  clock_->Took(receiver_.get(), 1);
+  const int64_t stamp_ns = ReceptionTime_ns(receiver_.get(), message, clock_);
   if (from.sin_port == own_address_.sin_port && from.sin_addr.s_addr == own_address_.sin_addr.s_addr) {
     return Taken::kDropped;
   }
@@ -159,7 +158,7 @@ UdpCanBus::Taken UdpCanBus::TakeDatagram(CanFrame* frame) {
     ++counters_.malformed;
     return Taken::kDropped;
   }
-  frame->stamp_ns = ReceptionTime_ns(message, *clock_);
+  frame->stamp_ns = stamp_ns;
   return Taken::kFrame;
 }
 

@@ -29,9 +29,6 @@ class Clock {
   /// CLOCK_REALTIME, ns: for logs and for comparing with the kernel's stamps.
   virtual int64_t WallNow() const = 0;
 
-  /// Time on WallNow's clock of what the kernel has stamped.
-  virtual int64_t WallTimeOf(const timespec& kernel_stamp) const = 0;
-
   /// Waits until `deadline_ns`; may return earlier when a signal comes.
   virtual void SleepUntil(int64_t deadline_ns) = 0;
 
@@ -39,15 +36,17 @@ class Clock {
   /// return earlier when a signal comes.
   virtual void Wait(std::span<pollfd> inputs, int64_t deadline_ns) = 0;
 
-  // Stepped time stands while a datagram of the run is unread, so it is told of them all. The machine's clock
-  // does not care.
+  // Stepped time stands while a datagram of the run is unread, so it is told of each. The machine's clock
+  // only reads the kernel's stamps.
 
   /// `descriptor` receives what is sent to a multicast group from now on. Start-up only.
   virtual void Joined(int /*descriptor*/, const sockaddr_in& /*group*/) {}
   /// This process has sent a datagram to a group.
   virtual void Sent(const sockaddr_in& /*group*/) {}
-  /// This process has read so many datagrams, perhaps none. True: read again, there is one more.
-  virtual bool Took(int /*descriptor*/, int /*datagrams*/) { return false; }
+  /// One datagram was read, of any sender: when it came, on WallNow's clock. Once for each, in their order.
+  virtual int64_t ArrivalOf(int descriptor, const timespec& kernel_stamp) = 0;
+  /// There was nothing to read. True: read again, one more is to come.
+  virtual bool MoreToCome(int /*descriptor*/) { return false; }
 };
 
 }  // namespace armada

@@ -10,10 +10,10 @@ namespace armada {
 /// Memory that all programs of a run in stepped time share. One program runs at a time, the holder; it alone
 /// writes here, but for what is marked. All that is not atomic to a reader is so by the hand-over of turns.
 struct ClockPage {
-  static constexpr uint32_t kMagic = 0x41524d31;
-  static constexpr size_t kMaxSlots = 72;     // 64 boards, leader, emulation, the run itself, some to spare
-  static constexpr size_t kMaxGroups = 128;   // a bus an arm, and LCM
-  static constexpr size_t kInstants = 65536;  // remembered: a minute of milliseconds
+  static constexpr uint32_t kMagic = 0x41524d32;
+  static constexpr size_t kMaxSlots = 72;      // 64 boards, leader, emulation, the run itself, some to spare
+  static constexpr size_t kMaxGroups = 72;     // a bus an arm, and LCM
+  static constexpr size_t kRemembered = 2048;  // datagrams of a group: more than a socket's queue holds
 
   enum class State : uint32_t { kAbsent, kWaiting, kRunning, kGone };
 
@@ -21,6 +21,7 @@ struct ClockPage {
   struct Group {
     std::atomic<uint64_t> address{0};  ///< IPv4 and port; 0: none yet
     std::atomic<uint64_t> sent{0};     ///< datagrams that programs of the run have sent to it
+    std::array<std::atomic<int64_t>, kRemembered> sent_ns{};  ///< when, by their number
   };
 
   /// A program of the run.
@@ -31,13 +32,7 @@ struct ClockPage {
     std::atomic<bool> suspended{false};  ///< gets no turns, as after SIGSTOP
     std::atomic<bool> rung{false};       ///< something was sent to a group that it awaits
     std::atomic<int64_t> deadline_ns{0};
-    std::array<std::atomic<uint64_t>, kMaxGroups / 64> awaited{};  ///< a bit a group
-  };
-
-  /// An instant of stepped time, and when it began on the machine's wall clock.
-  struct Instant {
-    std::atomic<int64_t> wall_ns{0};
-    std::atomic<int64_t> time_ns{0};
+    std::array<std::atomic<uint64_t>, (kMaxGroups + 63) / 64> awaited{};  ///< a bit a group
   };
 
   uint32_t magic = kMagic;
@@ -48,15 +43,15 @@ struct ClockPage {
   std::atomic<int64_t> next_step_ns{0};  ///< CLOCK_MONOTONIC: when the present instant began, paced
   std::atomic<uint32_t> holder{0};
   std::atomic<uint64_t> turns{0};
-  std::atomic<uint64_t> instants{0};
-  std::atomic<uint64_t> late{0};  ///< datagrams that were not there at once, and then came
-  std::atomic<uint64_t> lost{0};  ///< and that never came
+  std::atomic<uint64_t> late{0};     ///< datagrams that were not there at once, and then came
+  std::atomic<uint64_t> lost{0};     ///< and that never came
+  std::atomic<uint64_t> dropped{0};  ///< that did not fit into a full socket, of a program that had no turns
+  std::atomic<uint64_t> strangers{0};  ///< that no program of the run has sent
   /// CLOCK_MONOTONIC time at which the run let go of its programs, from when on time passes by itself for
   /// them; 0: not yet. Written by the run at any time.
   std::atomic<int64_t> released_ns{0};
   std::array<Group, kMaxGroups> group{};
   std::array<Slot, kMaxSlots> slot{};
-  std::array<Instant, kInstants> instant{};
 };
 static_assert(std::atomic<uint64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 static_assert(sizeof(std::atomic<uint32_t>) == 4, "a futex");

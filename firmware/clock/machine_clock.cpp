@@ -19,7 +19,7 @@ int64_t MachineClock::WallNow() const {
   return Now_ns(CLOCK_REALTIME);
 }
 
-int64_t MachineClock::WallTimeOf(const timespec& kernel_stamp) const {
+int64_t MachineClock::ArrivalOf(int /*descriptor*/, const timespec& kernel_stamp) {
   return Nanoseconds(kernel_stamp);
 }
 

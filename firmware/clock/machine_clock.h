@@ -12,9 +12,9 @@ class MachineClock final : public Clock {
 
   int64_t Now() const override;
   int64_t WallNow() const override;
-  int64_t WallTimeOf(const timespec& kernel_stamp) const override;
   void SleepUntil(int64_t deadline_ns) override;
   void Wait(std::span<pollfd> inputs, int64_t deadline_ns) override;
+  int64_t ArrivalOf(int descriptor, const timespec& kernel_stamp) override;
 };
 
 }  // namespace armada

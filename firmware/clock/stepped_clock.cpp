@@ -1,6 +1,5 @@
 #include "firmware/clock/stepped_clock.h"
 
-#include <fcntl.h>
 #include <linux/futex.h>
 #include <linux/sock_diag.h>
 #include <sys/mman.h>
@@ -11,11 +10,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
-#include "firmware/clock/machine_clock.h"
 #include "firmware/clock/monotonic.h"
-#include "firmware/unique_fd.h"
 
 namespace armada {
 namespace {
@@ -50,30 +48,24 @@ bool IsReadable(int descriptor, int timeout_ms) {
 
 }  // namespace
 
-ClockPage* SteppedClock::Map(int descriptor, const std::string& name, std::string* error) {
+ClockPage* SteppedClock::Map(int descriptor, std::string* error) {
   struct stat status {};
-  if (descriptor < 0 || fstat(descriptor, &status) != 0) {
-    *error = "clock " + name + ": " + std::strerror(errno);
-    return nullptr;
-  }
-  if (status.st_size != static_cast<off_t>(sizeof(ClockPage))) {
-    *error = "clock " + name + ": is no clock page of this version";
+  if (fstat(descriptor, &status) != 0 || status.st_size != static_cast<off_t>(sizeof(ClockPage))) {
+    *error = "stepped clock: descriptor " + std::to_string(descriptor) + " is no clock page of this version";
     return nullptr;
   }
   void* const memory =
       mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, descriptor, 0);
   if (memory != MAP_FAILED) return static_cast<ClockPage*>(memory);
-  *error = "clock " + name + ": " + std::strerror(errno);
+  *error = std::string("stepped clock: ") + std::strerror(errno);
   return nullptr;
 }
 
-std::unique_ptr<SteppedClock> SteppedClock::Attach(const std::string& page_path, int slot,
-                                                   std::string* error) {
-  const UniqueFd file(open(page_path.c_str(), O_RDWR | O_CLOEXEC));
-  ClockPage* const page = Map(file.get(), page_path, error);
+std::unique_ptr<SteppedClock> SteppedClock::Attach(int descriptor, int slot, std::string* error) {
+  ClockPage* const page = Map(descriptor, error);
   if (page == nullptr) return nullptr;
   if (page->magic != ClockPage::kMagic || slot < 1 || static_cast<uint32_t>(slot) >= page->slots) {
-    *error = "clock " + page_path + ": has no slot " + std::to_string(slot) + " for a program";
+    *error = "stepped clock: has no slot " + std::to_string(slot) + " for a program";
     munmap(page, sizeof(ClockPage));
     return nullptr;
   }
@@ -95,17 +87,6 @@ SteppedClock::~SteppedClock() {
 int64_t SteppedClock::Now() const {
   const int64_t released_ns = page_->released_ns.load();
   return page_->now_ns.load() + (released_ns == 0 ? 0 : Now_ns(CLOCK_MONOTONIC) - released_ns);
-}
-
-// The instant in which the kernel put the stamp on: time stood then, and every program can tell.
-int64_t SteppedClock::WallTimeOf(const timespec& kernel_stamp) const {
-  const int64_t wall_ns = Nanoseconds(kernel_stamp);
-  const uint64_t newest = page_->instants.load();
-  const uint64_t oldest = newest < ClockPage::kInstants ? 0 : newest - ClockPage::kInstants + 1;
-  if (released()) return WallNow();
-  uint64_t at = newest;
-  while (at > oldest && page_->instant[at % ClockPage::kInstants].wall_ns.load() > wall_ns) --at;
-  return page_->instant[at % ClockPage::kInstants].time_ns.load() + page_->wall_offset_ns;
 }
 
 void SteppedClock::Wait(std::span<pollfd> inputs, int64_t deadline_ns) {
@@ -130,7 +111,7 @@ void SteppedClock::Wait(std::span<pollfd> inputs, int64_t deadline_ns) {
 }
 
 void SteppedClock::Await(std::span<const pollfd> inputs) {
-  std::array<uint64_t, ClockPage::kMaxGroups / 64> awaited{};
+  std::array<uint64_t, (ClockPage::kMaxGroups + 63) / 64> awaited{};
   for (const pollfd& input : inputs) {
     if (const Subscription* found = Find(input.fd))
       awaited[found->group / 64] |= uint64_t{1} << found->group % 64;
@@ -176,11 +157,6 @@ int64_t SteppedClock::LeastDeadline() const {
 
 void SteppedClock::StepTo(int64_t time_ns) {
   if (page_->pace > 0.0) KeepPace(time_ns - page_->now_ns);
-  const uint64_t number = page_->instants + 1;
-  ClockPage::Instant& instant = page_->instant[number % ClockPage::kInstants];
-  instant.wall_ns = Now_ns(CLOCK_REALTIME);
-  instant.time_ns = time_ns;
-  page_->instants = number;
   page_->now_ns = time_ns;
 }
 
@@ -204,6 +180,12 @@ bool SteppedClock::AwaitTurn() {
   slot.turn = 0;
   slot.state = State::kRunning;
   return wait_on && !released();
+}
+
+bool SteppedClock::MayWaitOn() {
+  if (getppid() == parent_) return true;
+  raise(SIGTERM);
+  return false;
 }
 
 void SteppedClock::Wake(std::atomic<uint32_t>* word) {
@@ -240,41 +222,63 @@ void SteppedClock::Joined(int descriptor, const sockaddr_in& group) {
 void SteppedClock::Sent(const sockaddr_in& group) {
   if (released()) return;
   const size_t number = GroupOf(group);
-  ++page_->group[number].sent;
+  ClockPage::Group& to = page_->group[number];
+  to.sent_ns[to.sent % ClockPage::kRemembered] = page_->now_ns.load();
+  ++to.sent;
   for (size_t i = 0; i < page_->slots; ++i) {
     ClockPage::Slot& slot = page_->slot[i];
     if ((slot.awaited[number / 64] >> number % 64 & 1) != 0) slot.rung = true;
   }
 }
 
-bool SteppedClock::Took(int descriptor, int datagrams) {
+// Every socket gets a group's datagrams in the order in which they were sent, so that their number tells
+// when.
+int64_t SteppedClock::ArrivalOf(int descriptor, const timespec& /*kernel_stamp*/) {
   Subscription* const subscription = Find(descriptor);
-  if (subscription == nullptr || released()) return false;
-  subscription->due += static_cast<uint64_t>(std::max(0, datagrams));
-  return AwaitOwed(subscription);
+  if (subscription == nullptr || released()) return WallNow();
+  const ClockPage::Group& group = page_->group[subscription->group];
+  const uint64_t number = subscription->due++;
+  if (number >= group.sent) return WallNow();  // a stranger's
+  return group.sent_ns[number % ClockPage::kRemembered] + page_->wall_offset_ns;
 }
 
-// A stranger's datagrams count as read, too: with strangers about, less is owed than is.
+bool SteppedClock::MoreToCome(int descriptor) {
+  Subscription* const subscription = Find(descriptor);
+  return subscription != nullptr && !released() && AwaitOwed(subscription);
+}
+
+uint64_t SteppedClock::Owed(const Subscription& subscription) const {
+  const uint64_t sent = page_->group[subscription.group].sent;
+  return sent > subscription.due ? sent - subscription.due : 0;
+}
+
+// The socket is empty, so that the count of datagrams can be set right: what is missing is late, was dropped
+// where it did not fit, or is lost; what is too much came from strangers.
 bool SteppedClock::AwaitOwed(Subscription* subscription) {
-  const auto owed = [&] {
-    const uint64_t sent = page_->group[subscription->group].sent;
-    return sent > subscription->due ? sent - subscription->due : 0;
-  };
-  if (owed() == 0) return false;
+  const uint64_t sent = page_->group[subscription->group].sent;
+  if (subscription->due > sent) page_->strangers += subscription->due - sent;
+  if (subscription->due > sent) subscription->due = sent;
+  if (Owed(*subscription) == 0) return false;
   if (IsReadable(subscription->descriptor, 0)) return true;
-  if (owed() <= DroppedAt(subscription->descriptor)) return false;
-  if (IsReadable(subscription->descriptor, kOwed_ms)) {
-    ++page_->late;
-    return true;
+  const uint64_t dropped = DroppedAt(subscription->descriptor);
+  if (Owed(*subscription) > dropped - subscription->dropped) {
+    if (IsReadable(subscription->descriptor, kOwed_ms)) {
+      ++page_->late;
+      return true;
+    }
+    page_->lost += Owed(*subscription);
+  } else {
+    page_->dropped += Owed(*subscription);
   }
-  ++page_->lost;
-  subscription->due = page_->group[subscription->group].sent;
+  subscription->dropped = dropped;
+  subscription->due = sent;
   return false;
 }
 
 void SteppedClock::AwaitOwed(std::span<const pollfd> inputs) {
   for (const pollfd& input : inputs) {
-    if (Subscription* const subscription = Find(input.fd)) AwaitOwed(subscription);
+    Subscription* const subscription = Find(input.fd);
+    if (subscription != nullptr && !IsReadable(input.fd, 0)) AwaitOwed(subscription);
   }
 }
 

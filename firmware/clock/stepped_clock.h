@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <array>
 #include <memory>
 #include <string>
@@ -18,9 +20,9 @@ namespace armada {
 /// Emulation only: a program that uses it must have no real bus and no real network.
 class SteppedClock : public Clock {
  public:
-  /// Joins the run whose page is the file `page`, as program `slot`, and returns when it is its turn. Null,
-  /// and the reason in `error`, on failure.
-  static std::unique_ptr<SteppedClock> Attach(const std::string& page, int slot, std::string* error);
+  /// Joins the run whose page is the file open as `descriptor`, as program `slot`, and returns when it is its
+  /// turn. Null, and the reason in `error`, on failure.
+  static std::unique_ptr<SteppedClock> Attach(int descriptor, int slot, std::string* error);
 
   /// Leaves the run.
   ~SteppedClock() override;
@@ -28,24 +30,25 @@ class SteppedClock : public Clock {
   bool IsStepped() const override { return true; }
   int64_t Now() const override;
   int64_t WallNow() const override { return Now() + page_->wall_offset_ns; }
-  int64_t WallTimeOf(const timespec& kernel_stamp) const override;
   void SleepUntil(int64_t deadline_ns) override { Wait({}, deadline_ns); }
   void Wait(std::span<pollfd> inputs, int64_t deadline_ns) override;
   void Joined(int descriptor, const sockaddr_in& group) override;
   void Sent(const sockaddr_in& group) override;
-  bool Took(int descriptor, int datagrams) override;
+  int64_t ArrivalOf(int descriptor, const timespec& kernel_stamp) override;
+  bool MoreToCome(int descriptor) override;
 
  protected:
   using State = ClockPage::State;
 
   /// `slot` runs from now on.
-  SteppedClock(ClockPage* page, size_t slot) : page_(page), slot_(slot) {}
+  SteppedClock(ClockPage* page, size_t slot) : page_(page), slot_(slot), parent_(getppid()) {}
 
   /// Maps a page; null, and the reason in `error`, on failure.
-  static ClockPage* Map(int descriptor, const std::string& name, std::string* error);
+  static ClockPage* Map(int descriptor, std::string* error);
 
-  /// Asked every 50 ms of the machine's time while it waits for its turn; false: waits no longer.
-  virtual bool MayWaitOn() { return true; }
+  /// Asked every 50 ms of the machine's time while it waits for its turn; false: waits no longer. A program
+  /// whose run has died is to end: it gets SIGTERM.
+  virtual bool MayWaitOn();
 
   /// No program waits for another any more.
   bool released() const { return page_->released_ns.load() != 0; }
@@ -64,13 +67,15 @@ class SteppedClock : public Clock {
   struct Subscription {
     int descriptor = -1;
     size_t group = 0;
-    uint64_t due = 0;  ///< of the datagrams sent to the group: how many were read, or before its time
+    uint64_t due = 0;      ///< of the datagrams sent to the group: how many were read, or before its time
+    uint64_t dropped = 0;  ///< at this socket, known of so far
   };
 
   static constexpr size_t kNobody = ClockPage::kMaxSlots;
   size_t ChooseInThisInstant() const;
   int64_t LeastDeadline() const;
   void StepTo(int64_t time_ns);
+  uint64_t Owed(const Subscription& subscription) const;
   void KeepPace(int64_t step_ns);
   /// False when it is no use to wait any longer.
   bool AwaitTurn();
@@ -83,6 +88,7 @@ class SteppedClock : public Clock {
 
   ClockPage* page_;
   size_t slot_;
+  pid_t parent_;
   std::array<Subscription, ClockPage::kMaxGroups> subscriptions_{};
   size_t subscription_count_ = 0;
 };

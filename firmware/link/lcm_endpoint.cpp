@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "firmware/clock/monotonic.h"
 #include "firmware/link/lcm_packet.h"
 
 namespace armada {
@@ -122,7 +123,6 @@ int LcmEndpoint::ReceiveBatch(int wanted) {
   for (mmsghdr& header : headers_) header.msg_hdr.msg_controllen = sizeof(Slot::control);
   const int got = recvmmsg(socket_, headers_.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
   CompareClocks();
-  more_ = clock_->Took(socket_, got);
   return std::max(got, 0);
 }
 
@@ -145,20 +145,18 @@ std::optional<LcmMessage> LcmEndpoint::Read(int index) {
 }
 
 int64_t LcmEndpoint::ReadControl(msghdr* header) {
-  int64_t arrival_ns = arrival_.now_ns();
+  timespec stamp = Timespec(clock_->WallNow());
   for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
     if (item->cmsg_level != SOL_SOCKET) continue;
     if (item->cmsg_type == SCM_TIMESTAMPNS) {
-      timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(item), sizeof(stamp));
-      arrival_ns = arrival_.ToMonotonic(clock_->WallTimeOf(stamp));
     } else if (item->cmsg_type == SO_RXQ_OVFL) {
       uint32_t dropped = 0;
       std::memcpy(&dropped, CMSG_DATA(item), sizeof(dropped));
       counters_.overflowed = dropped;
     }
   }
-  return arrival_ns;
+  return arrival_.ToMonotonic(clock_->ArrivalOf(socket_, stamp));
 }
 
 }  // namespace armada

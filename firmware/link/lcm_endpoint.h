@@ -69,7 +69,7 @@ class LcmEndpoint {
         if (const auto message = Read(i)) handler(*message);
       }
       taken += got;
-      if (got < wanted && !more_) break;
+      if (got < wanted && !clock_->MoreToCome(socket_)) break;
     }
     return taken;
   }
@@ -101,7 +101,6 @@ class LcmEndpoint {
   int socket_;
   sockaddr_in group_;
   Clock* clock_;
-  bool more_ = false;  ///< the last batch was not the last datagram
   uint32_t sequence_ = 0;
   ArrivalClock arrival_;
   LcmCounters counters_;

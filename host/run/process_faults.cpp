@@ -140,7 +140,7 @@ bool ProcessFaults::Make(const Step& step, ProgramControl* control,
       stopped_for_good_.erase(step.arm_id);
       return true;
     case Deed::kStart:
-      dead_arms_.erase(step.arm_id);
+      if (dead_arms_.erase(step.arm_id) == 0) return true;  // another fault has started it already
       return start(step.arm_id, error);
     case Deed::kLinkDown:
       return Switch(step.arm_id, false, error);

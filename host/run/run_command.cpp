@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -99,6 +100,7 @@ class Run {
   bool Start(ProcessGroup* group, const std::string& name, std::vector<std::string> argv, std::string* error);
   /// Words of a program's command line that say whose time it takes.
   std::vector<std::string> ClockArguments(const std::string& program);
+  int ClockDescriptor() const { return stepped_ ? stepped_->descriptor() : -1; }
   bool OpenLcmLog(ProcessGroup* group, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
   std::optional<ProcessExit> Pass(ProcessGroup* group);
@@ -220,6 +222,9 @@ bool Run::MakeNetworks(std::string* error) {
   if (!url) return false;
   const std::vector<std::string> interfaces = SocketCanInterfaces(scenario_.fleet, options_.hil_buses);
   const std::vector<std::string> wanted = NamesToReserve(scenario_.fleet, options_.hil_buses);
+  // As fast as it goes nobody could follow anyway, and strangers would be heard.
+  if (options_.time == "stepped" && options_.pace == 0.0 && EnterPrivateNetwork(error)) return true;
+  error->clear();
   if (std::string taken; !HasMulticastRoute()) {
     if (!EnterOwnNetwork("no multicast route here", interfaces, error)) {
       error->append("; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev ");
@@ -239,7 +244,7 @@ bool Run::Start(ProcessGroup* group, const std::string& name, std::vector<std::s
                 std::string* error) {
   std::string log_name = name;
   for (char& c : log_name) c = c == ' ' ? '_' : c;
-  return group->Start({name, std::move(argv), {}, In(log_name + ".txt")}, error);
+  return group->Start({name, std::move(argv), {}, In(log_name + ".txt"), ClockDescriptor()}, error);
 }
 
 std::vector<std::string> Run::ClockArguments(const std::string& program) {
@@ -320,7 +325,7 @@ bool Run::StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* er
   const auto stepped = ClockArguments(name);
   board.insert(board.end(), stepped.begin(), stepped.end());
   const std::string log = In("arm_" + id + (anew ? "_anew" : "") + ".txt");
-  return group->Start({name, std::move(board), {}, log}, error) &&
+  return group->Start({name, std::move(board), {}, log, ClockDescriptor()}, error) &&
          (!anew || !stepped_ || stepped_->AwaitPrograms(group, error));
 }
 
@@ -402,6 +407,10 @@ void Run::TakeMessages() {
 
 bool Run::Watch(ProcessGroup* group, std::string* error) {
   const int64_t end_ns = epoch_ns_ + static_cast<int64_t>((scenario_.seconds + kOverrun_s) * 1e9);
+  // The last message of the leader is one period before the end.
+  const double last_period_s = std::max(scenario_.fleet.timing.period_s, 1.0 / scenario_.leader.rate_hz);
+  const int64_t earliest_end_ns =
+      epoch_ns_ + static_cast<int64_t>((scenario_.seconds - last_period_s) * 1e9) - kMoment_ns;
   const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
   int64_t next_progress_ns = 0;
   while (running_ > faults_->stopped_for_good()) {
@@ -410,7 +419,13 @@ bool Run::Watch(ProcessGroup* group, std::string* error) {
     TakeLiveFaults();
     if (!MakeFaults(group, error)) return false;
     if (ended) {
-      const bool well = ended->Succeeded() || faults_->TakeOrdered(*ended) || FinishedItsRun(*ended);
+      const bool ordered = faults_->TakeOrdered(*ended);
+      if (ended->Succeeded() && !ordered && clock_->Now() < earliest_end_ns) {
+        *error = ended->name + " (pid " + std::to_string(ended->pid) +
+                 ") ended before the run did: a signal has stopped it";
+        return false;
+      }
+      const bool well = ended->Succeeded() || ordered || FinishedItsRun(*ended);
       if (!well || ended->name == "lcm-logger") {
         *error =
             (ended->name == "lcm-logger" ? In("lcm.log") + " is not complete: " : "") + ended->Describe();
@@ -444,6 +459,7 @@ bool Run::Execute(std::string* error) {
   ProcessGroup group;
   if (!stepped_) heartbeat_.emplace(static_cast<int64_t>(TolerableLateness_s(scenario_.fleet.timing) * 1e9));
   const bool done = StartAll(&group, error) && Watch(&group, error);
+  if (!done && ProcessGroup::StopRequested()) interrupted_ = true;
   if (heartbeat_) heartbeat_->Stop();
   ended_s_ = 1e-9 * static_cast<double>(clock_->Now() - epoch_ns_);
   if (faults_) faults_->KillStopped(control_.get());
@@ -469,9 +485,13 @@ bool Run::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::string
     return false;
   (*json)["time"] = options_.time;
   if (stepped_) {
-    (*json)["stepped"] = {{"pace", options_.pace},
-                          {"stepped_s", stepped_->stepped_s()},
-                          {"timing", {{"real_s", stepped_->real_s()}, {"datagrams_late", stepped_->late()}}}};
+    (*json)["stepped"] = {{"stepped_s", stepped_->stepped_s()},
+                          {"datagrams_dropped", stepped_->dropped()},
+                          {"timing",
+                           {{"pace", options_.pace},
+                            {"real_s", stepped_->real_s()},
+                            {"datagrams_late", stepped_->late()},
+                            {"datagrams_of_strangers", stepped_->strangers()}}}};
   }
   RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
                                         heartbeat_ ? &*heartbeat_ : nullptr, out_.string());
@@ -519,6 +539,9 @@ std::string CheckTime(const RunOptions& options, const ScenarioConfig& scenario)
 }  // namespace
 
 int RunRunCommand(const RunOptions& options) {
+  // A reader that is gone and a file that may not grow are errors to be told, not ends of this process.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   auto scenario = options.scenario.Load();
   if (!scenario) return kExitBadConfig;
   if (const std::string wrong = ChooseBuses(options, &scenario->fleet); !wrong.empty()) {

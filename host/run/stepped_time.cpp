@@ -43,8 +43,9 @@ char StateOf(pid_t pid) {
 // For people: who, and what keeps it.
 std::string Describe(const std::string& program, pid_t pid) {
   const char state = StateOf(pid);
-  const char* const what = state == 'T' || state == 't'   ? "stopped by a signal"
-                           : state == 'S' || state == 'D' ? "asleep"
+  const char* const what = state == 'T' || state == 't'                   ? "stopped by a signal"
+                           : state == 'Z' || state == 'X' || state == '?' ? "dead"
+                           : state == 'S' || state == 'D'                 ? "asleep"
                                                           : "at work or waiting for a processor";
   return program + " (pid " + std::to_string(pid) + ", " + what + ")";
 }
@@ -63,15 +64,13 @@ std::unique_ptr<SteppedTime> SteppedTime::Create(double pace, std::string* error
     *error = std::string("stepped time: no memory for its page: ") + std::strerror(errno);
     return nullptr;
   }
-  ClockPage* const memory = Map(file.get(), "of this run", error);
+  ClockPage* const memory = Map(file.get(), error);
   if (memory == nullptr) return nullptr;
   auto* const page = new (memory) ClockPage;
   page->slots = 1;
   page->pace = pace;
   page->wall_offset_ns = kWallAtStart_ns - kStart_ns;
   page->now_ns = kStart_ns;
-  page->instant[0].wall_ns = Now_ns(CLOCK_REALTIME);
-  page->instant[0].time_ns = kStart_ns;
   page->slot[0].state = State::kRunning;
   page->slot[0].pid = getpid();
   return std::unique_ptr<SteppedTime>(new SteppedTime(page, std::move(file)));
@@ -100,8 +99,7 @@ std::vector<std::string> SteppedTime::ArgumentsFor(const std::string& program) {
   slot->rung = false;
   const auto number = slot - page()->slot.data();
   running_[static_cast<size_t>(number - 1)] = true;
-  return {"--stepped-clock", "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_.get()) +
-                                 ":" + std::to_string(number)};
+  return {"--stepped-clock", std::to_string(file_.get()) + ":" + std::to_string(number)};
 }
 
 bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
@@ -134,11 +132,11 @@ bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
   return true;
 }
 
-bool SteppedTime::AwaitsAnEnd() const {
+std::string SteppedTime::WhoseEndIsAwaited() const {
   for (size_t i = 0; i < running_.size(); ++i) {
-    if (running_[i] && page()->slot[i + 1].state == State::kGone) return true;
+    if (running_[i] && page()->slot[i + 1].state == State::kGone) return programs_[i];
   }
-  return false;
+  return "";
 }
 
 // Ends are taken note of before time goes on: when a program has left is then the same in each run, and time
@@ -146,8 +144,17 @@ bool SteppedTime::AwaitsAnEnd() const {
 std::optional<ProcessExit> SteppedTime::Pass(ProcessGroup* group, std::span<pollfd> inputs,
                                              int64_t until_ns) {
   group_ = group;
-  while (AwaitsAnEnd() && ended_.empty() && !ProcessGroup::StopRequested()) {
+  const int64_t begin_ns = Now_ns(CLOCK_MONOTONIC);
+  for (bool told = false;
+       AwaitsAnEnd() && ended_.empty() && trouble_.empty() && !ProcessGroup::StopRequested();) {
     if (const auto ended = group->Poll(milliseconds(50))) NoteEnd(*ended);
+    const int64_t since_ns = Now_ns(CLOCK_MONOTONIC) - begin_ns;
+    if (since_ns < kTold_ns || !AwaitsAnEnd()) continue;
+    const std::string who = Describe(WhoseEndIsAwaited(), group->Find(WhoseEndIsAwaited()).value_or(0));
+    if (!told) std::cerr << "armada run: waiting for the end of " << who << std::endl;
+    told = true;
+    if (since_ns > kHung_ns)
+      trouble_ = who + " has left the run " + Seconds(since_ns) + " ago and does not end";
   }
   if (ended_.empty() && trouble_.empty()) Wait(inputs, until_ns);
   if (ended_.empty()) return std::nullopt;

@@ -22,8 +22,10 @@ class SteppedTime final : public SteppedClock {
   ~SteppedTime() override;
 
   /// Words of its command line by which a program takes its time from here; a slot is given in the order of
-  /// the first calls. Call before the program starts; again, if it starts anew.
+  /// the first calls. Call before the program starts; again, if it starts anew after its end. The program is
+  /// to keep descriptor().
   std::vector<std::string> ArgumentsFor(const std::string& program);
+  int descriptor() const { return file_.get(); }
   /// Time stands until every program that was started is there. False with *error set.
   bool AwaitPrograms(ProcessGroup* group, std::string* error);
 
@@ -47,6 +49,8 @@ class SteppedTime final : public SteppedClock {
   /// Datagrams that came late or never: what was run is then not what another run would be.
   uint64_t late() const { return page()->late; }
   uint64_t lost() const { return page()->lost; }
+  uint64_t dropped() const { return page()->dropped; }
+  uint64_t strangers() const { return page()->strangers; }
 
  private:
   SteppedTime(ClockPage* page, UniqueFd file) : SteppedClock(page, 0), file_(std::move(file)) {}
@@ -56,8 +60,9 @@ class SteppedTime final : public SteppedClock {
   /// Whether the program whose turn it is gets on; else trouble_ says what it does.
   bool HolderGetsOn();
   ClockPage::Slot* Find(const std::string& program);
-  /// A program that has left, or was killed, and whose end has not been taken note of.
-  bool AwaitsAnEnd() const;
+  /// A program that has left, or was killed, and whose end has not been taken note of; empty: none.
+  std::string WhoseEndIsAwaited() const;
+  bool AwaitsAnEnd() const { return !WhoseEndIsAwaited().empty(); }
 
   UniqueFd file_;
   ProcessGroup* group_ = nullptr;

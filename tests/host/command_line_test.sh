@@ -134,10 +134,10 @@ expect 2 'ttl=1' "$armada" run "$scenario" --time stepped --set 'link.lcm_url="u
 chmod 600 "$work/fleet.key"
 sed '0,/^bus = .*/s//bus = "socketcan:can0"/' "$work/keyed.toml" >"$work/real.toml"
 expect 78 'bus socketcan:can0 is of the kernel; stepped time is for emulated arms' "$bin/armada-arm" "$work/real.toml" \
-  --arm 1 --state "$work/state" --stepped-clock /dev/null:1
+  --arm 1 --state "$work/state" --stepped-clock 0:1
 expect 78 'ttl=1; stepped time is for emulated arms' "$bin/armada-arm" \
   <(sed "s|^key_file.*|&\nlcm_url = 'udpm://239.255.76.67:7667?ttl=1'|; s|'fleet.key'|'$work/fleet.key'|" "$work/keyed.toml") \
-  --arm 1 --state "$work/state" --stepped-clock /dev/null:1
+  --arm 1 --state "$work/state" --stepped-clock 0:1
 expect 0 '^ok: fleet RMS' "$armada" run "$scenario" --seconds 6 --set window_start_s=5.0 --time stepped --pace 0 \
   --out "$work/stepped"
 expect 78 'is of a run in stepped time, made of its seed, and no secret' "$bin/armada-arm" "$work/stepped/fleet.toml" --arm 1 \

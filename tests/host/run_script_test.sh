@@ -202,6 +202,7 @@ when test -R core
 check 'a test that fails is a failure' test "$code" = 1
 check 'and is named' says 'core.Supervisor.Breaks'
 check 'and counted' test "$(tail -n 1 output)" = 'tests: 2 passed, 1 failed'
+check 'after the time of all' ends_with '^in all +[0-9]+\.[0-9] s'
 given '' 0 0
 when fuzz --seconds 0
 check 'a fuzzer runs for some time' test "$code" = 2
