@@ -4,6 +4,7 @@
 
 #include "firmware/can/frame_list.h"
 #include "firmware/can/joint_drive_config.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -21,8 +22,7 @@ struct EmulatedDriveConfig {
   double feedback_period_s = 0.0;      ///< of what the drive sends by itself; 0: on request only
   double watchdog_s = 0.03;            ///< as set in drives whose protocol cannot set it; 0: off
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"latency_s", "s", 0, 0.1, "from a command's frame to its torque"}, latency_s);
     parameter({"encoder_counts_per_turn", "", 0, 1e8, "encoder counts per motor turn; 0: continuous"},
               encoder_counts_per_turn);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -47,6 +48,33 @@ enum class FaultKind {
   kJunk,
 };
 
+constexpr auto EnumNames(FaultKind) {
+  using enum FaultKind;
+  return std::to_array<EnumName<FaultKind>>({{kDrive, "drive"},
+                                             {kDriveError, "drive_error"},
+                                             {kBusLoss, "bus_loss"},
+                                             {kBusDelay, "bus_delay"},
+                                             {kBusOff, "bus_off"},
+                                             {kErrorPassive, "error_passive"},
+                                             {kBusDown, "bus_down"},
+                                             {kQueueFull, "queue_full"},
+                                             {kControllerDies, "controller_dies"},
+                                             {kControllerStops, "controller_stops"},
+                                             {kControllerRestarts, "controller_restarts"},
+                                             {kSlowTick, "slow_tick"},
+                                             {kCpuHog, "cpu_hog"},
+                                             {kLeaderDies, "leader_dies"},
+                                             {kLeaderStops, "leader_stops"},
+                                             {kLeaderJumps, "leader_jumps"},
+                                             {kLeaderNonfinite, "leader_nonfinite"},
+                                             {kLinkLoss, "link_loss"},
+                                             {kPartition, "partition"},
+                                             {kReplay, "replay"},
+                                             {kReorder, "reorder"},
+                                             {kForge, "forge"},
+                                             {kJunk, "junk"}});
+}
+
 /// What of a drive is wrong.
 enum class FaultSignal {
   kNone,
@@ -56,8 +84,29 @@ enum class FaultSignal {
   kCurrent,   ///< the torque that the drive produces
 };
 
+constexpr auto EnumNames(FaultSignal) {
+  using enum FaultSignal;
+  return std::to_array<EnumName<FaultSignal>>({{kNone, "none"},
+                                               {kPosition, "position"},
+                                               {kVelocity, "velocity"},
+                                               {kStatus, "status"},
+                                               {kCurrent, "current"}});
+}
+
 /// In which way.
 enum class FaultWay { kNone, kOff, kStuck, kGarbage, kWrong, kSlow, kDelayed, kIntermittent };
+
+constexpr auto EnumNames(FaultWay) {
+  using enum FaultWay;
+  return std::to_array<EnumName<FaultWay>>({{kNone, "none"},
+                                            {kOff, "off"},
+                                            {kStuck, "stuck"},
+                                            {kGarbage, "garbage"},
+                                            {kWrong, "wrong"},
+                                            {kSlow, "slow"},
+                                            {kDelayed, "delayed"},
+                                            {kIntermittent, "intermittent"}});
+}
 
 /// Something that goes wrong at a time of the run.
 struct FaultConfig {
@@ -74,8 +123,7 @@ struct FaultConfig {
 
   bool IsActive(double t_s) const { return t_s >= at_s - 1e-9 && t_s < until_s - 1e-9; }
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "kind of the fault; docs/faults.md says what each wants"}, kind);
     parameter({"at_s", "s", 0, kForGood_s, "time at which it begins"}, at_s);
     parameter({"until_s", "s", 0, kForGood_s, "time at which it is over"}, until_s);

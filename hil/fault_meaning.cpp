@@ -4,8 +4,6 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "hil/scenario_names.h"
-
 namespace armada {
 namespace {
 

@@ -3,7 +3,6 @@
 #include "firmware/app/config/value_text.h"
 #include "hil/fault_meaning.h"
 #include "hil/faulty_status.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {

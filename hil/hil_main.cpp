@@ -5,12 +5,12 @@
 
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/heap_counter.h"
 #include "firmware/app/program_clock.h"
@@ -22,7 +22,6 @@
 #include "hil/hil_server.h"
 #include "hil/poll_clock.h"
 #include "hil/scenario_file.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {
@@ -236,16 +235,15 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   armada::Options options;
-  CLI::App app("Emulates a scenario's arms and drives in real time, on the buses that its fleet names.",
-               "armada-hil");
+  armada::CommandLine app(
+      "Emulates a scenario's arms and drives in real time, on the buses that its fleet names.", "armada-hil");
   app.add_option("SCENARIO", options.scenario, "scenario file (TOML)")->required();
-  app.add_option("--seed", options.seed, "of start states, disturbances and sensor noise")
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", options.seed, "of start states, disturbances and sensor noise")->not_negative();
   app.add_option("--epoch-ns", options.epoch_ns,
                  "fleet's time 0 on CLOCK_MONOTONIC, ns; default: one second from now")
-      ->check(CLI::PositiveNumber);
+      ->positive();
   app.add_option("--seconds", options.seconds, "length of the run from the epoch; default: the scenario's")
-      ->check(CLI::Range(0.001, 1e6));
+      ->range(0.001, 1e6);
   app.add_option("--set", options.sets,
                  "key=value in place of the scenario's or the fleet's; may be repeated")
       ->allow_extra_args(false);
@@ -254,12 +252,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--out", options.out, "directory for hil.json and can_<id>.log");
   app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
-  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
-      ->check(CLI::Range(0, 99));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
-  }
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")->range(0, 99);
+  if (const auto code = app.parse(argc, argv)) return *code;
   return armada::Run(options);
 }

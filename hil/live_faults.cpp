@@ -10,7 +10,6 @@
 
 #include "firmware/app/config/parameter_reader.h"
 #include "firmware/app/config/toml_parser.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/app/fleet.h"
+#include "firmware/core/parameter.h"
 #include "hil/emulated_drive.h"
 #include "hil/fault.h"
 
@@ -18,8 +19,7 @@ struct SineAxisConfig {
   double frequency_hz = 0.0;
   double phase_rad = 0.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"offset_m", "m", -100, 100, "centre of the motion"}, offset_m);
     parameter({"amplitude_m", "m", 0, 100, "amplitude of the motion"}, amplitude_m);
     parameter({"frequency_hz", "Hz", 0, 100, "frequency of the motion"}, frequency_hz);
@@ -28,6 +28,11 @@ struct SineAxisConfig {
 };
 
 enum class LeaderKind { kNone, kSine, kWaypoints };
+
+constexpr auto EnumNames(LeaderKind) {
+  using enum LeaderKind;
+  return std::to_array<EnumName<LeaderKind>>({{kNone, "none"}, {kSine, "sine"}, {kWaypoints, "waypoints"}});
+}
 
 struct LeaderConfig {
   LeaderKind kind = LeaderKind::kSine;
@@ -40,8 +45,7 @@ struct LeaderConfig {
   double dwell_s = 0.0;
   bool loop = true;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "leader: none, sine, waypoints"}, kind);
     parameter({"rate_hz", "Hz", 1, 1000, "messages a second on LEADER"}, rate_hz);
     parameter({"speed_m_s", "m/s", 1e-3, 100, "waypoints: bound on the speed along the path"}, speed_m_s);
@@ -60,6 +64,11 @@ enum class StartKind {
   kNearLeader,  ///< at rest, the end effector near x_0(0), the elbow bent
 };
 
+constexpr auto EnumNames(StartKind) {
+  using enum StartKind;
+  return std::to_array<EnumName<StartKind>>({{kBox, "box"}, {kNearLeader, "near_leader"}});
+}
+
 struct StartConfig {
   StartKind kind = StartKind::kBox;
   double q_range_rad = 5.0;
@@ -71,8 +80,7 @@ struct StartConfig {
   std::string learned = "none";
   StartMode mode = StartMode::kRunning;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "start states: box (the paper's), near_leader (at rest, near the leader)"},
               kind);
     parameter({"q_range_rad", "rad", 0, 100, "box: q(0) uniform in +- this"}, q_range_rad);
@@ -99,14 +107,22 @@ struct StartConfig {
 
 enum class DisturbanceKind { kNone, kUniform, kConstant, kSine, kAdversarial };
 
+constexpr auto EnumNames(DisturbanceKind) {
+  using enum DisturbanceKind;
+  return std::to_array<EnumName<DisturbanceKind>>({{kNone, "none"},
+                                                   {kUniform, "uniform"},
+                                                   {kConstant, "constant"},
+                                                   {kSine, "sine"},
+                                                   {kAdversarial, "adversarial"}});
+}
+
 struct DisturbanceConfig {
   DisturbanceKind kind = DisturbanceKind::kUniform;
   double amplitude_Nm = 40.0;
   double hold_s = 0.01;
   double frequency_hz = 0.5;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0,
                "d(t) of (1.1): none, uniform (random, held), constant, sine, adversarial (pushes away from "
                "the leader)"},
@@ -128,8 +144,7 @@ struct LostLinkConfig {
   double at_s = -1.0;
   double until_s = kForGood_s;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"from", "", 0, kMaxArms, "id of the arm that is no longer heard; 0: the leader"}, from);
     parameter({"to", "", 1, kMaxArms, "id of the arm that no longer hears it"}, to);
     parameter({"at_s", "s", 0, kForGood_s, "time of the first message that is lost"}, at_s);
@@ -150,8 +165,7 @@ struct NetworkConfig {
     });
   }
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"delay_ticks", "ticks", 0, 50, "control periods that a message is under way, beside none"},
               delay_ticks);
     parameter({"loss", "", 0, 1, "share of messages lost, each receiver on its own"}, loss);
@@ -163,6 +177,11 @@ enum class CriterionKind {
   kTracking,   ///< every arm stays near the leader in the window
   kAgreement,  ///< leaderless: estimates agree and every arm stays near the agreed point
 };
+
+constexpr auto EnumNames(CriterionKind) {
+  using enum CriterionKind;
+  return std::to_array<EnumName<CriterionKind>>({{kTracking, "tracking"}, {kAgreement, "agreement"}});
+}
 
 struct CriterionConfig {
   CriterionKind kind = CriterionKind::kTracking;
@@ -183,8 +202,7 @@ struct CriterionConfig {
     return std::find(excused.begin(), excused.end(), arm_id) != excused.end();
   }
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "what ok means: tracking, agreement (leaderless)"}, kind);
     parameter({"error_max_m", "m", 0, 100, "largest error of any arm in the window; also the settling band"},
               error_max_m);
@@ -211,8 +229,7 @@ struct PlantConfig {
   double diverged_rad_s = 1e4;
   double brake_s = 0.1;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"step_s", "s", 1e-6, 0.001, "largest integration step of the plant (RK4)"}, step_s);
     parameter(
         {"diverged_rad_s", "rad/s", 1, 1e9, "joint speed at which an arm counts as diverged and is frozen"},
@@ -228,8 +245,7 @@ struct OperatorConfig {
   int arm = 0;
   Request request = Request::kNone;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"at_s", "s", 0, 1e6, "time at which the operator asks"}, at_s);
     parameter({"arm", "", 0, kMaxArms, "id of the arm; 0: every arm"}, arm);
     parameter({"request", "", 0, 0, "what of it, as by `armada ctl`: arm, start, hold, reset, estop"},
@@ -255,8 +271,7 @@ struct ScenarioConfig {
   std::vector<OperatorConfig> operations;
   std::vector<std::optional<ArmInitialState>> learned;  ///< from start.learned, by arm; empty: none
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"seconds", "s", 0.1, 1e6, "length of the run"}, seconds);
     parameter({"window_start_s", "s", 0, 1e6,
                "start of the window over which errors are measured; its end is the run's"},

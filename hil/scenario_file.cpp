@@ -8,7 +8,6 @@
 
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/config/fleet_layout.h"
-#include "firmware/app/config/key_lister.h"
 #include "firmware/app/config/override.h"
 #include "firmware/app/config/parameter_reader.h"
 #include "firmware/app/config/reference_writer.h"
@@ -18,7 +17,6 @@
 #include "firmware/app/config/value_text.h"
 #include "firmware/app/initial_state.h"
 #include "hil/scenario_base.h"
-#include "hil/scenario_names.h"
 #include "hil/scenario_rules.h"
 
 namespace armada {
@@ -34,8 +32,7 @@ struct ScenarioLayout {
   ScenarioConfig scenario;
   std::string base = kNoBase;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"name", "", 0, 0, "name of the scenario"}, scenario.name);
     parameter({"fleet", "", 0, 0, "fleet file, relative to this one"}, fleet);
     parameter({"base", "", 0, 0,
@@ -53,7 +50,8 @@ bool Contains(const std::vector<std::string>& keys, const std::string& key) {
 /// Applies those meant for the scenario, and returns the fleet's.
 std::vector<Override> ApplyOwn(const std::vector<Override>& overrides, ConfigNode* root,
                                std::vector<ConfigError>* errors) {
-  const std::vector<std::string> own = KeysOf<ScenarioLayout>();
+  ScenarioLayout layout;
+  const std::vector<std::string> own = KeysOf(&layout);
   const std::vector<std::string> of_fleet = FleetKeys();
   std::vector<Override> rest;
   for (const Override& change : overrides) {
@@ -191,16 +189,11 @@ void WriteParameterReference(std::ostream& out) {
          "from 1, and `*`\n"
          "for each: `--set arm.6.control.subtask.kind=none`, `--set 'arm.*.gravity_m_s2=9.81'`,\n"
          "`--set leader.axis.1.amplitude_m=0.4`.\n";
-  ReferenceWriter::Documented documented;
-  ReferenceWriter fleet("", &documented);
-  FleetLayout fleet_layout;
-  fleet_layout.Visit(fleet);
-  out << "\n## Fleet files\n" << fleet.Text();
-
-  ReferenceWriter scenario("", &documented);
-  ScenarioLayout scenario_layout;
-  scenario_layout.Visit(scenario);
-  out << "\n## Scenario files\n" << scenario.Text();
+  DocumentedTables documented;
+  FleetLayout fleet;
+  out << "\n## Fleet files\n" << ReferenceText(&fleet, &documented);
+  ScenarioLayout scenario;
+  out << "\n## Scenario files\n" << ReferenceText(&scenario, &documented);
   out << "\n### `[overrides]`\n\nQuoted dotted keys of the scenario or its fleet, each with the value to use "
          "instead.\n";
 }

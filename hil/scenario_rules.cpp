@@ -7,7 +7,6 @@
 #include "firmware/app/config/value_text.h"
 #include "hil/fault_rules.h"
 #include "hil/leader_path.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {

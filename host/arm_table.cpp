@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include "firmware/app/config/enum_names.h"
+#include "firmware/core/named_enum.h"
 
 namespace armada {
 namespace {

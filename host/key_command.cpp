@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/link/fleet_key.h"
 
@@ -26,11 +27,11 @@ int MakeKey(const std::string& path) {
 
 }  // namespace
 
-void AddKeyCommand(CLI::App* app, int* code) {
-  CLI::App* command = app->add_subcommand("key", "the secret that a fleet's messages are sealed with");
+void AddKeyCommand(Command* app, int* code) {
+  Command* command = app->add_subcommand("key", "the secret that a fleet's messages are sealed with");
   command->require_subcommand(1);
   auto path = std::make_shared<std::string>();
-  CLI::App* create = command->add_subcommand("new", "make a file with a new key, mode 0600");
+  Command* create = command->add_subcommand("new", "make a file with a new key, mode 0600");
   create->add_option("FILE", *path, "where; never over an existing file")->required();
   create->callback([=] { *code = MakeKey(*path); });
 }

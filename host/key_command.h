@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// Adds `armada key`: it makes the key of a fleet. `*code` is the exit code after parsing.
-void AddKeyCommand(CLI::App* app, int* code);
+void AddKeyCommand(Command* app, int* code);
 
 }  // namespace armada

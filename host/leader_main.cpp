@@ -3,13 +3,13 @@
 // Exit codes: 0 stopped by a signal or after --seconds; 1 the network cannot be used; 2 usage; 78 bad
 // configuration.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <iostream>
 #include <limits>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/link_identity.h"
 #include "firmware/app/program_clock.h"
@@ -161,25 +161,20 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   armada::Options options;
-  CLI::App app("Publishes the leader of a scenario on LCM, channel LEADER.", "armada-leader");
+  armada::CommandLine app("Publishes the leader of a scenario on LCM, channel LEADER.", "armada-leader");
   app.add_option("SCENARIO", options.scenario, "scenario file")->required();
   app.add_option("--epoch-ns", options.epoch_ns,
                  "fleet's time 0 on CLOCK_MONOTONIC, ns; default: the first message")
-      ->check(CLI::Range(int64_t{1}, armada::kMaxStampNs));
+      ->range(int64_t{1}, armada::kMaxStampNs);
   app.add_option("--seconds", options.seconds,
                  "length of the run from the epoch; default: until SIGINT or SIGTERM")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->range(1e-3, 1e9);
   app.add_option("--set", options.sets, "key=value in place of the scenario's; may be repeated")->expected(1);
   app.add_option("--state", options.state, "folder for what must survive restarts: the number of starts")
       ->capture_default_str();
   app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
-  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
-      ->check(CLI::Range(0, 99));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
-  }
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")->range(0, 99);
+  if (const auto code = app.parse(argc, argv)) return *code;
   armada::StopOnSignals();
   return armada::Run(options);
 }

@@ -1,9 +1,9 @@
 // armada: the command line of the fleet.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"
 #include "host/ablate/ablate_command.h"
@@ -33,12 +33,12 @@ std::string ProgramDirectory() {
 
 int main(int argc, char** argv) {
   using namespace armada;
-  CLI::App app("Armada: several different robot arms follow one moving leader in task space.", "armada");
+  CommandLine app("Armada: several different robot arms follow one moving leader in task space.", "armada");
   app.require_subcommand(1);
   int code = kExitOk;
 
   CheckOptions check;
-  CLI::App* check_command =
+  Command* check_command =
       app.add_subcommand("check", "validate a fleet or a scenario and print its margins");
   check_command->add_option("FILE", check.path, "fleet or scenario file")->required();
   check_command->add_option("--set", check.sets, "key=value: any parameter of the file")->take_all();
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   check_command->callback([&] { code = RunCheck(check); });
 
   SimOptions sim;
-  CLI::App* sim_command = app.add_subcommand("sim", "run a scenario in virtual time");
+  Command* sim_command = app.add_subcommand("sim", "run a scenario in virtual time");
   sim.scenario.AddTo(sim_command);
   sim_command->add_option("--seed", sim.seed, "seed of start states, disturbance and noise")
       ->capture_default_str();
@@ -63,10 +63,10 @@ int main(int argc, char** argv) {
   sim_command->callback([&] { code = RunSimCommand(sim); });
 
   SweepOptions sweep;
-  CLI::App* sweep_command = app.add_subcommand("sweep", "run a scenario over many seeds, on all cores");
+  Command* sweep_command = app.add_subcommand("sweep", "run a scenario over many seeds, on all cores");
   std::vector<std::string> shards;
   std::string merged;
-  CLI::App* merge_command = sweep_command->add_subcommand("merge", "join the results of shards");
+  Command* merge_command = sweep_command->add_subcommand("merge", "join the results of shards");
   merge_command->add_option("FILES", shards, "results written by `armada sweep --json`")->required();
   merge_command->add_option("--json", merged, "write the joint result here");
   merge_command->callback([&] { code = RunSweepMergeCommand(shards, merged); });
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   });
 
   FloorOptions floor;
-  CLI::App* floor_command =
+  Command* floor_command =
       app.add_subcommand("floor", "the error that no controller can avoid under a scenario's disturbance");
   floor.scenario.AddScenarioTo(floor_command);
   auto* floor_seed = floor_command->add_option("--seed", floor.seed, "seed of disturbance and noise");
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   floor_command->callback([&] { code = RunFloorCommand(floor); });
 
   AblateOptions ablate;
-  CLI::App* ablate_command =
+  Command* ablate_command =
       app.add_subcommand("ablate", "what each component earns: a scenario with one taken out at a time");
   ablate.scenario.AddTo(ablate_command);
   ablate_command->add_option("--seeds", ablate.seeds, "A:B, both included; the same for every row")
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
 
   RunOptions run;
   run.program_directory = ProgramDirectory();
-  CLI::App* run_command = app.add_subcommand("run", "run a scenario as processes");
+  Command* run_command = app.add_subcommand("run", "run a scenario as processes");
   run.scenario.AddTo(run_command);
   run_command
       ->add_option(
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
   run_command->callback([&] { code = RunRunCommand(run); });
 
   std::string report;
-  CLI::App* report_command = app.add_subcommand("report", "figures and a page of a finished run or sweep");
+  Command* report_command = app.add_subcommand("report", "figures and a page of a finished run or sweep");
   report_command
       ->add_option("PATH", report,
                    "directory written by `armada run` or `armada sim --trace`; or what `armada sweep --json` "
@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
   report_command->callback([&] { code = RunReportCommand(report); });
 
   SpyOptions spy;
-  CLI::App* spy_command = app.add_subcommand("spy", "watch every message of a fleet in lcm-spy");
+  Command* spy_command = app.add_subcommand("spy", "watch every message of a fleet in lcm-spy");
   auto* spy_file = spy_command->add_option("FILE", spy.file, "fleet or scenario file: its link.lcm_url");
   spy_command->add_option("--lcm-url", spy.lcm_url, "watch this LCM url")->excludes(spy_file);
   spy_command->add_flag("--jar-only", spy.jar_only, "make the jar of message types and print its path");
@@ -173,10 +173,6 @@ int main(int argc, char** argv) {
     WriteStatesReference(std::cout);
   });
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   return code;
 }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "firmware/app/config/enum_names.h"
 #include "firmware/app/whole_file.h"
+#include "firmware/core/named_enum.h"
 #include "host/floor/floor.h"
 
 namespace armada {

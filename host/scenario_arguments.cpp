@@ -3,18 +3,19 @@
 #include <iostream>
 #include <sstream>
 
+#include "firmware/app/command_line.h"
 #include "hil/scenario_file.h"
 
 namespace armada {
 
-void ScenarioArguments::AddTo(CLI::App* command) {
+void ScenarioArguments::AddTo(Command* command) {
   AddScenarioTo(command);
   command->add_option("--law", law, "local law instead of the fleet's: paper, robust");
   command->add_option("--estimator", estimator,
                       "estimator instead of the fleet's: paper, implicit, predictive");
 }
 
-void ScenarioArguments::AddScenarioTo(CLI::App* command) {
+void ScenarioArguments::AddScenarioTo(Command* command) {
   command->add_option("SCENARIO", scenario, "scenario file (TOML)")->required();
   command->add_option("--seconds", seconds, "length of the run instead of the scenario's")->take_last();
   command

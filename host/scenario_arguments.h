@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +8,8 @@
 #include "hil/scenario.h"
 
 namespace armada {
+
+class Command;
 
 /// What every command that works on a scenario takes.
 struct ScenarioArguments {
@@ -19,9 +20,9 @@ struct ScenarioArguments {
   std::vector<std::string> sets;
 
   /// Everything, for commands that run the fleet.
-  void AddTo(CLI::App* command);
+  void AddTo(Command* command);
   /// Without --law and --estimator, for commands that the fleet's control does not concern.
-  void AddScenarioTo(CLI::App* command);
+  void AddScenarioTo(Command* command);
   /// The overrides in order: --law, --estimator, --seconds, then each --set.
   std::vector<std::string> Overrides() const;
   /// The scenario with its overrides; every error is printed to stderr when there is none.

@@ -1,6 +1,5 @@
 // armada-arm: the controller process of one arm.
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -8,6 +7,7 @@
 #include <memory>
 
 #include "firmware/app/arm_loop.h"
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/heap_counter.h"
@@ -139,7 +139,7 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   armada::Options options;
-  CLI::App app(
+  armada::CommandLine app(
       "Controller of one arm of a fleet: 100 Hz, fixed memory. It comes up in MONITOR, with its drives off, "
       "and moves the arm after `armada ctl arm` and `armada ctl start`.",
       "armada-arm");
@@ -159,12 +159,7 @@ int main(int argc, char** argv) {
                "HAZARD: no operator is asked");
   app.add_option("--json", options.json, "write timing, memory and bus figures here at the end");
   app.add_option("--stepped-clock", options.stepped_clock, armada::kSteppedClockHelp);
-  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")
-      ->check(CLI::Range(0, 99));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? armada::kExitOk : armada::kExitUsage;
-  }
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0 asks for none")->range(0, 99);
+  if (const auto code = app.parse(argc, argv)) return *code;
   return armada::Run(options);
 }

@@ -7,6 +7,7 @@
 #include "firmware/can/joint_drive_config.h"
 #include "firmware/core/arm_controller.h"
 #include "firmware/core/graph.h"
+#include "firmware/core/parameter.h"
 #include "firmware/link/clock_offset.h"
 #include "firmware/link/silence_watch.h"
 
@@ -24,8 +25,7 @@ struct LcmLinkConfig {
 
   bool has_key() const { return key_file != LcmLinkConfig().key_file; }
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"lcm_url", "", 0, 0, "LCM multicast group, port and ttl: 0 on one machine, 1 between boards"},
               lcm_url);
     parameter({"key_file", "", 0, 0,

@@ -6,6 +6,7 @@
 
 #include "firmware/app/config/config_error.h"
 #include "firmware/app/fleet.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -19,8 +20,7 @@ struct InitialStateFile {
   std::vector<std::vector<double>> P_theta;
   std::string arm_entry = "any";
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"zeta_x_m", "m", -1e6, 1e6, "x_hat at the start"}, zeta_x_m);
     parameter({"zeta_v_m_s", "m/s", -1e6, 1e6, "v_hat at the start"}, zeta_v_m_s);
     parameter({"zeta_a_m_s2", "m/s^2", -1e6, 1e6, "a_hat at the start"}, zeta_a_m_s2);

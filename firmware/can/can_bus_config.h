@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "firmware/can/can_filter.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -14,8 +15,7 @@ struct CanBusConfig {
   int transmit_window = 4;
   int tx_queue_length_max = 32;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"bitrate_bit_s", "bit/s", 1e4, 1e6, "bit rate; the interface must be set to it"},
               bitrate_bit_s);
     parameter({"data_bitrate_bit_s", "bit/s", 1e5, 8e6, "CAN FD: bit rate of the data, likewise"},

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
+
 namespace armada {
 
 /// Units, timing and reactions of a CiA 402 drive.
@@ -16,8 +18,7 @@ struct Cia402Config {
   double boot_timeout_s = 0.3;            ///< from a reset to the boot-up message; then it is reset again
   double sdo_timeout_s = 0.05;            ///< from a request to its answer; then it is asked again
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"counts_per_turn", "", 1, 1e8, "position units (6064h) a motor turn"}, counts_per_turn);
     parameter({"velocity_per_turn_s", "", 1e-3, 1e8,
                "velocity units (606Ch) at one motor turn a second; 60 for a drive that counts in rpm"},

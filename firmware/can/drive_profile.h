@@ -1,5 +1,7 @@
 #pragma once
 
+#include "firmware/core/named_enum.h"
+
 namespace armada {
 
 /// Drive families, and generations of them that differ on the wire.
@@ -12,6 +14,17 @@ enum class DriveProfile {
   kCia402,              ///< CANopen, CiA 402, cyclic synchronous torque
   kMoteus,              ///< moteus registers on CAN FD
 };
+
+constexpr auto EnumNames(DriveProfile) {
+  using enum DriveProfile;
+  return std::to_array<EnumName<DriveProfile>>({{kODriveCanSimple, "odrive_cansimple"},
+                                                {kODriveCanSimpleV05, "odrive_cansimple_v05"},
+                                                {kMiniCheetah, "mini_cheetah"},
+                                                {kCubeMars, "cubemars"},
+                                                {kDamiao, "damiao"},
+                                                {kCia402, "cia402"},
+                                                {kMoteus, "moteus"}});
+}
 
 /// Addresses that a drive of the profile can have.
 struct NodeIdRange {

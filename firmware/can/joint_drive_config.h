@@ -5,6 +5,7 @@
 #include "firmware/can/mit_config.h"
 #include "firmware/can/moteus_config.h"
 #include "firmware/can/odrive_config.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -26,8 +27,7 @@ struct JointDriveConfig {
   Cia402Config cia402 = {};  ///< profile cia402
   MoteusConfig moteus = {};  ///< profile moteus
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"drive", "", 0, 0, "profile that the drive speaks"}, profile);
     parameter({"node_id", "", 0, 127, "address of the drive on the arm's bus"}, node_id);
     parameter({"gear_ratio", "", 1e-3, 1e4, "motor turns per joint turn"}, gear_ratio);

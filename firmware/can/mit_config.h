@@ -1,5 +1,7 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
+
 namespace armada {
 
 /// What a drive that speaks MIT packed frames is set to: both sides must agree, the wire does not tell
@@ -12,8 +14,7 @@ struct MitConfig {
   double kp_max_Nm_rad = 500.0;
   double kd_max_Nms_rad = 5.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"master_id", "", 0, 0x7FF, "identifier of the drive's replies"}, master_id);
     parameter({"position_max_rad", "rad", 0.1, 1e4, "range of packed positions, +- this, motor side"},
               position_max_rad);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
+
 namespace armada {
 
 /// Settings of an ODrive that its CANSimple does not tell.
@@ -7,8 +9,7 @@ struct ODriveConfig {
   double heartbeat_s = 0.1;
   double heartbeat_timeout_s = 0.35;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"heartbeat_s", "s", 0.01, 10,
                "period of the drive's heartbeat, as it is set there (heartbeat_rate_ms)"},
               heartbeat_s);

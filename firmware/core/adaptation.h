@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/projection.h"
 
 namespace armada {
@@ -11,6 +12,12 @@ enum class AdaptationKind {
   kBoth,
 };
 
+constexpr auto EnumNames(AdaptationKind) {
+  using enum AdaptationKind;
+  return std::to_array<EnumName<AdaptationKind>>(
+      {{kNone, "none"}, {kKalman, "kalman"}, {kGradient, "gradient"}, {kBoth, "both"}});
+}
+
 struct AdaptationConfig {
   AdaptationKind kind = AdaptationKind::kKalman;
   double initial_deviation = 3.0;
@@ -19,8 +26,7 @@ struct AdaptationConfig {
   double gradient_T = 0.1;
   double gradient_step_max = 0.5;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "adaptation of theta_hat: none, kalman, gradient (1.8), both"}, kind);
     parameter({"initial_deviation", "kg m^2", 1e-6, 1e4, "Kalman: standard deviation of theta_hat's start"},
               initial_deviation);

@@ -7,6 +7,7 @@
 #include "firmware/core/limits.h"
 #include "firmware/core/motion_watch.h"
 #include "firmware/core/paper_law.h"
+#include "firmware/core/parameter.h"
 #include "firmware/core/robust_law.h"
 #include "firmware/core/stop_law.h"
 #include "firmware/core/supervisor.h"
@@ -23,8 +24,7 @@ struct TimingConfig {
   int transmit_failures_max = 2;
   int listens = 4;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"period_s", "s", 1e-4, 1, "control period h"}, period_s);
     parameter(
         {"sample_to_torque_s", "s", 0, 1,

@@ -2,6 +2,7 @@
 
 #include "firmware/core/adaptation.h"
 #include "firmware/core/forward_dynamics.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -17,8 +18,7 @@ struct SensorConfig {
   double consistent_s = 0.1;
   double consistent_deviations = 6.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter(
         {"position_deviation_rad", "rad", 1e-9, 1,
          "standard deviation of a sample of q, beside the resolution of the drive's frames; one value or "
@@ -68,8 +68,7 @@ struct DisturbanceModelConfig {
   double drift_Nm = 1.0;
   double bound_Nm = 40.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"fast_deviation_Nm", "N m", 1e-6, 1e5,
                "standard deviation of what disturbs a joint's torque anew each tick"},
               fast_deviation_Nm);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/planar_arm.h"
 
 namespace armada {
@@ -26,8 +27,7 @@ struct AvoidanceConfig {
   int halvings = 5;
   double tolerance_rad_s = 1e-9;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter(
         {"enabled", "", 0, 1, "keep the arm from its joints' limits and its obstacles, where it has any"},
         enabled);

@@ -4,6 +4,7 @@
 #include "firmware/core/gains.h"
 #include "firmware/core/governor.h"
 #include "firmware/core/implicit_control.h"
+#include "firmware/core/parameter.h"
 #include "firmware/core/projection.h"
 #include "firmware/core/pseudoinverse.h"
 #include "firmware/core/reference.h"
@@ -17,12 +18,16 @@ enum class LawKind {
   kRobust,  ///< the same law made to work on a sampled, saturated arm
 };
 
+constexpr auto EnumNames(LawKind) {
+  using enum LawKind;
+  return std::to_array<EnumName<LawKind>>({{kPaper, "paper"}, {kRobust, "robust"}});
+}
+
 struct PaperLawConfig {
   double alpha_1_s = 3.0;
   double difference_s = 1e-4;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"alpha_1_s", "1/s", 1e-3, 1e3, "alpha of (1.5) and (1.6) in the law as printed"}, alpha_1_s);
     parameter({"difference_s", "s", 1e-8, 0.1,
                "half step along dq of the central difference that gives d phi / dt in (1.6)"},
@@ -46,8 +51,7 @@ struct ControlConfig {
   SubtaskConfig subtask;
   SupervisorConfig supervisor;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"law", "", 0, 0, "local law: paper (as printed), robust"}, law);
     parameter.Table("gains", gains);
     parameter.Table("paper", paper);

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/zeta.h"
 
 namespace armada {
@@ -12,6 +13,12 @@ enum class EstimatorKind {
   kImplicit,    ///< implicit Euler: the set-valued sgn solved exactly, no chatter
   kPredictive,  ///< implicit, around the prediction of the states to the end of the tick: fourth order in x
 };
+
+constexpr auto EnumNames(EstimatorKind) {
+  using enum EstimatorKind;
+  return std::to_array<EnumName<EstimatorKind>>(
+      {{kPaper, "paper"}, {kImplicit, "implicit"}, {kPredictive, "predictive"}});
+}
 
 struct EstimatorConfig {
   EstimatorKind kind = EstimatorKind::kPredictive;
@@ -24,8 +31,7 @@ struct EstimatorConfig {
   bool leaderless = false;
   double chatter_bands = 4.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "estimator (1.9): paper (explicit Euler), implicit, predictive"}, kind);
     parameter({"beta_1_m_s", "m/s", 1e-6, 1e3, "beta_1 of (1.9), above the leader's speed per axis"},
               beta_1_m_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -10,8 +11,7 @@ struct GainsConfig {
   TaskVector K_x_Ns_m = TaskVector::Constant(1, 50.0);
   JointVector K_r_Nm = JointVector::Constant(1, 60.0);
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter(
         {"K_s_Nms_rad", "N m s/rad", 1e-6, 1e6, "K_s of (1.2), joint damping on s; one value or one a joint"},
         K_s_Nms_rad);

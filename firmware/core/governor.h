@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -8,8 +9,7 @@ struct GovernorConfig {
   double acceleration_rad_s2 = 100.0;
   double speed_rad_s = 15.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"acceleration_rad_s2", "rad/s^2", 1e-2, 1e5,
                "slew of the governed reference velocity, largest joint"},
               acceleration_rad_s2);

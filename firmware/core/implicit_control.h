@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -9,8 +10,7 @@ struct ImplicitControlConfig {
   int sweeps = 60;
   double tolerance_rad_s = 1e-12;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"on", "", 0, 1, "(1.2) by implicit Euler; false: as printed, which chatters"}, on);
     parameter(
         {"sweeps", "", 1, 1000, "bound on sweeps of the coordinate descent that solves the implicit sgn"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -11,6 +12,11 @@ enum class ObstacleKind {
   kHalfPlane,  ///< all behind a straight edge: a wall, a table
 };
 
+constexpr auto EnumNames(ObstacleKind) {
+  using enum ObstacleKind;
+  return std::to_array<EnumName<ObstacleKind>>({{kDisc, "disc"}, {kHalfPlane, "half_plane"}});
+}
+
 /// A thing at rest in the plane in which a planar arm moves, in the fleet's world frame.
 struct ObstacleConfig {
   ObstacleKind kind = ObstacleKind::kDisc;
@@ -19,8 +25,7 @@ struct ObstacleConfig {
   double radius_m = 0.1;
   double normal_rad = 0.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "disc, or half_plane: everything behind a straight edge"}, kind);
     parameter({"x_m", "m", -1e3, 1e3, "disc: x of its centre; half_plane: x of a point of its edge"}, x_m);
     parameter({"y_m", "m", -1e3, 1e3, "the same for y"}, y_m);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "firmware/core/obstacle.h"
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -14,8 +15,7 @@ struct LinkConfig {
   double r_m = 0.5;     ///< distance of the centre of mass from the link's joint, in (0, l]
   double I_kgm2 = 0.1;  ///< moment of inertia about the centre of mass
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"m_kg", "kg", 1e-6, 1e4, "mass of the link"}, m_kg);
     parameter({"l_m", "m", 1e-3, 100, "length of the link"}, l_m);
     parameter({"r_m", "m", 1e-6, 100, "distance from the link's joint to its centre of mass, at most l_m"},
@@ -36,8 +36,7 @@ struct PlanarArmConfig {
   int obstacle_count = 0;
   std::array<ObstacleConfig, kMaxObstacles> obstacles{};
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"base_x_m", "m", -1e3, 1e3, "x of the arm's base in the world frame"}, base_x_m);
     parameter({"base_y_m", "m", -1e3, 1e3, "y of the arm's base in the world frame"}, base_y_m);
     parameter(

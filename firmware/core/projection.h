@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/planar_arm.h"
 
 namespace armada {
@@ -14,8 +15,7 @@ struct ProjectionConfig {
   double gravity_min_kgm = -5.0;
   double gravity_max_kgm = 25.0;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"inertia_min_kgm2", "kg m^2", 1e-9, 1e5, "smallest estimate of a diagonal inertia D_aa"},
               inertia_min_kgm2);
     parameter({"inertia_max_kgm2", "kg m^2", 1e-9, 1e5, "largest estimate of a diagonal inertia D_aa"},

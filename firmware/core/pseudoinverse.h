@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/types.h"
 
 namespace armada {
@@ -10,8 +11,7 @@ struct PseudoinverseConfig {
   double damping_max_m = 0.1;
   double sigma_threshold_m = 0.15;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter(
         {"damping_max_m", "m/rad", 0, 10, "damping l_max of J# at a singularity; 0 gives the undamped J#"},
         damping_max_m);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/core/parameter.h"
 #include "firmware/core/planar_arm.h"
 #include "firmware/core/pseudoinverse.h"
 #include "firmware/core/subtask.h"
@@ -19,8 +20,7 @@ struct ReferenceConfig {
   double reach_outer_margin_m = 0.005;
   int iterations = 3;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter(
         {"alpha_per_tick", "1/period", 1e-3, 1e3,
          "alpha of (1.5) times the period, near the target; 5.87 is the sampled-data LQR's, less forgives "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/core/avoidance.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -10,10 +11,21 @@ enum class SubtaskKind {
   kManipulability,  ///< phi = k d det(J J') / dq: the paper's arm 7
 };
 
+constexpr auto EnumNames(SubtaskKind) {
+  using enum SubtaskKind;
+  return std::to_array<EnumName<SubtaskKind>>(
+      {{kNone, "none"}, {kPosture, "posture"}, {kManipulability, "manipulability"}});
+}
+
 enum class PostureForm {
   kPrinted,  ///< phi = k (goal - q_j) e_j: what (I - J#J) leaves of it moves the joint
   kExact,    ///< phi such that the joint itself moves by k (goal - q_j), whatever the maintask does to it
 };
+
+constexpr auto EnumNames(PostureForm) {
+  using enum PostureForm;
+  return std::to_array<EnumName<PostureForm>>({{kPrinted, "printed"}, {kExact, "exact"}});
+}
 
 struct SubtaskConfig {
   SubtaskKind kind = SubtaskKind::kNone;
@@ -25,8 +37,7 @@ struct SubtaskConfig {
   double freedom_min = 0.02;
   AvoidanceConfig avoidance;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"kind", "", 0, 0, "use of spare joints: none, posture, manipulability"}, kind);
     parameter({"joint", "", 1, kMaxDof, "posture: number of the joint, from 1"}, joint);
     parameter(

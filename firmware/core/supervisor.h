@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/core/cause.h"
+#include "firmware/core/parameter.h"
 
 namespace armada {
 
@@ -9,6 +10,11 @@ enum class FleetStop {
   kCarryOn,  ///< Corollary 3: whoever still has a path to the leader follows on
   kHold,     ///< all that hear of it, from arm to arm
 };
+
+constexpr auto EnumNames(FleetStop) {
+  using enum FleetStop;
+  return std::to_array<EnumName<FleetStop>>({{kCarryOn, "carry_on"}, {kHold, "hold"}});
+}
 
 struct SupervisorConfig {
   static constexpr int kMaxMissedInASecond = 32;
@@ -45,8 +51,7 @@ struct SupervisorConfig {
   double safe_stop_max_s = 1.5;
   double quick_stop_s = 0.5;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"feedback_late_s", "s", 1e-4, 1, "age of a joint's sample at which the arm is DEGRADED"},
               feedback_late_s);
     parameter({"overrun_share", "", 0.01, 1,
@@ -130,8 +135,19 @@ struct SupervisorConfig {
 /// How a controller starts. Only an emulated arm may start running: the paper's random starts move.
 enum class StartMode { kMonitor, kRunning };
 
+constexpr auto EnumNames(StartMode) {
+  using enum StartMode;
+  return std::to_array<EnumName<StartMode>>({{kRunning, "running"}, {kMonitor, "monitor"}});
+}
+
 /// What an operator wants of an arm. The numbers are on the wire.
 enum class Request : int { kNone, kArm, kStart, kHold, kReset, kEstop };
+
+constexpr auto EnumNames(Request) {
+  using enum Request;
+  return std::to_array<EnumName<Request>>(
+      {{kArm, "arm"}, {kStart, "start"}, {kHold, "hold"}, {kReset, "reset"}, {kEstop, "estop"}});
+}
 
 inline constexpr int kRequests = 6;
 

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "firmware/core/parameter.h"
+
 namespace armada {
 
 /// When a message was sent, on the sender's clock, and when it came, on ours. Both clocks are monotonic; no
@@ -35,8 +37,7 @@ class ClockOffset {
     double wire_time_s = 50e-6;
     double silence_s = 0.05;
 
-    template <class Visitor>
-    void Visit(Visitor& parameter) {
+    void Visit(ParameterVisitor& parameter) {
       parameter({"window_s", "s", 0.1, 100, "time over which the earliest arrival of a sender is kept"},
                 window_s);
       parameter(

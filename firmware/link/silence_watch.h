@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "firmware/core/parameter.h"
+
 namespace armada {
 
 /// Tells a sender that has died from one whose messages get lost now and then: silence counts once it is
@@ -15,8 +17,7 @@ class SilenceWatch {
     double loss_max = 0.9;
     double first_s = 1.0;
 
-    template <class Visitor>
-    void Visit(Visitor& parameter) {
+    void Visit(ParameterVisitor& parameter) {
       parameter({"messages", "", 2, 1000,
                  "messages of a sender that have to be missing before it counts as silent, on a link without "
                  "losses"},

@@ -1,6 +1,7 @@
 #include "host/ablate/ablate_command.h"
 
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "firmware/app/exit_codes.h"

@@ -1,6 +1,7 @@
 #include "host/ablate/ablation.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace armada {
 namespace {

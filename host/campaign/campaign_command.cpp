@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/heap_counter.h"
 #include "host/campaign/campaign.h"
@@ -114,16 +116,16 @@ int Run(const Options& options) {
 
 }  // namespace
 
-void AddCampaignCommand(CLI::App* app, int* code) {
+void AddCampaignCommand(Command* app, int* code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app->add_subcommand(
+  Command* command = app->add_subcommand(
       "campaign", "random faults, single and in pairs, in virtual time, each run watched by a judge");
   options->scenario.scenario = "hil/scenarios/campaign.toml";
   options->scenario.AddTo(command);
   command->get_option("SCENARIO")->required(false)->capture_default_str();
   options->campaign.directory = "out/campaign";
-  CLI::Option* trials = command->add_option("--trials", options->campaign.trials, "number of trials");
-  trials->check(CLI::Range(1, 100'000'000))->capture_default_str();
+  Option* trials = command->add_option("--trials", options->campaign.trials, "number of trials");
+  trials->range(1, 100'000'000)->capture_default_str();
   command
       ->add_option("--seed", options->campaign.first_seed,
                    "of the first trial; each further one has the next")

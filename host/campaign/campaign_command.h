@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// `armada campaign`: random faults, and a judge.
-void AddCampaignCommand(CLI::App* app, int* code);
+void AddCampaignCommand(Command* app, int* code);
 
 }  // namespace armada

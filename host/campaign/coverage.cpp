@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "hil/fault_meaning.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 

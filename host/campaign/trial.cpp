@@ -4,7 +4,6 @@
 
 #include "hil/fault_meaning.h"
 #include "hil/faulty_status.h"
-#include "hil/scenario_names.h"
 #include "host/campaign/dice.h"
 
 namespace armada {

@@ -4,40 +4,17 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/app/config/effective_values.h"
 #include "firmware/app/config/value_text.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {
 
-/// Every value of a table as it is written.
-class ValueLister {
- public:
-  template <class T>
-  void operator()(const ParameterInfo& info, const T& value) {
-    lines_.emplace_back(std::string(info.key) + " = " + ValueText(value));
-  }
-  const std::vector<std::string>& lines() const { return lines_; }
-
- private:
-  std::vector<std::string> lines_;
-};
-
-template <class Config>
-std::vector<std::string> LinesOf(Config config) {
-  ValueLister lister;
-  config.Visit(lister);
-  return lister.lines();
-}
-
 /// What is not as it would be without.
-template <class Config>
-std::string TableOf(const char* header, const Config& config) {
+std::string TableOf(const char* header, const ParameterTable& config) {
   std::string text = std::string("\n[[") + header + "]]\n";
-  const std::vector<std::string> lines = LinesOf(config);
-  const std::vector<std::string> defaults = LinesOf(Config{});
-  for (size_t i = 0; i < lines.size(); ++i) {
-    if (lines[i] != defaults[i]) text += lines[i] + "\n";
+  for (const EffectiveValue& value : ListValues(config)) {
+    if (value.value != value.fallback) text += value.key + " = " + value.value + "\n";
   }
   return text;
 }
@@ -56,8 +33,8 @@ std::string ScriptOf(const ScenarioConfig& trial, const std::string& name, const
   text += "\n[overrides]\n\"arm.*.drive\" = " + ValueText(arm.joints.front().profile) + "\n";
   if (stop != SupervisorConfig().fleet_stop)
     text += "\"control.supervisor.fleet_stop\" = " + ValueText(stop) + "\n";
-  for (const FaultConfig& fault : trial.faults) text += TableOf("fault", fault);
-  for (const OperatorConfig& operation : trial.operations) text += TableOf("operator", operation);
+  for (FaultConfig fault : trial.faults) text += TableOf("fault", &fault);
+  for (OperatorConfig operation : trial.operations) text += TableOf("operator", &operation);
   return text;
 }
 

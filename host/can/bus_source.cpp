@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <iostream>
 
-#include "firmware/app/config/enum_names.h"
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/can/bus_name.h"
 #include "firmware/can/can_link.h"
+#include "firmware/core/named_enum.h"
 
 namespace armada {
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "firmware/app/config/enum_names.h"
 #include "firmware/can/bus_name.h"
 #include "firmware/can/can_link.h"
+#include "firmware/core/named_enum.h"
 #include "host/check/bus_load.h"
 #include "host/check/findings.h"
 

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/realtime.h"
@@ -28,7 +29,7 @@ int Fail(const std::string& text) {
   return kExitFailed;
 }
 
-void AddSource(CLI::App* command, BusSource* source) {
+void AddSource(Command* command, BusSource* source) {
   auto* fleet = command->add_option("--fleet", source->fleet, "fleet file: the tables of one of its arms");
   command->add_option("--arm", source->arm, "id of the arm; may be left out of a fleet of one")->needs(fleet);
   command->add_option("--set", source->sets, "key=value: any parameter of the fleet")->needs(fleet);
@@ -204,13 +205,13 @@ int RunCanCheck(const CheckCommand& command) {
 
 }  // namespace
 
-void AddCanCommand(CLI::App* app, int* code) {
-  CLI::App* can = app->add_subcommand("can", "tools for the arms' CAN buses");
+void AddCanCommand(Command* app, int* code) {
+  Command* can = app->add_subcommand("can", "tools for the arms' CAN buses");
   can->require_subcommand(1);
 
   // Options live as long as the callbacks that read them.
   const auto dbc = std::make_shared<BusSource>();
-  CLI::App* command = can->add_subcommand("dbc", "print a bus as a DBC file, out of the codecs' tables");
+  Command* command = can->add_subcommand("dbc", "print a bus as a DBC file, out of the codecs' tables");
   AddSource(command, dbc.get());
   command->callback([=] { *code = RunDbc(*dbc); });
 
@@ -227,15 +228,14 @@ void AddCanCommand(CLI::App* app, int* code) {
   input->add_option("--bus", decode->bus, "listen to udp:<group>:<port> or socketcan:<interface>");
   input->require_option(1);
   AddSource(command, &decode->source);
-  command->add_option("--seconds", decode->seconds, "listen this long; default: until Ctrl-C")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--seconds", decode->seconds, "listen this long; default: until Ctrl-C")->positive();
   command->callback([=] { *code = RunDecode(*decode); });
 
   const auto scan = std::make_shared<ScanCommand>();
   command = can->add_subcommand("scan", "find the drives of a bus; it listens, then asks, never commands");
   command->add_option("BUS", scan->bus, "udp:<group>:<port> or socketcan:<interface>")->required();
   command->add_option("--seconds", scan->seconds, "listen this long before asking")
-      ->check(CLI::Range(0.2, 3600.0))
+      ->range(0.2, 3600.0)
       ->capture_default_str();
   command->add_option("--profile", scan->profile, "ask drives of this profile only");
   command->add_flag("--json", scan->json, "print JSON");

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// Adds `armada can`: dbc, eds, decode, scan and check. `code` is where their callbacks leave the exit code.
-void AddCanCommand(CLI::App* app, int* code);
+void AddCanCommand(Command* app, int* code);
 
 }  // namespace armada

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/clock/machine_clock.h"
@@ -83,14 +84,14 @@ constexpr const char* TextOf(Request request) {
 
 }  // namespace
 
-void AddCtlCommand(CLI::App* app, int* code) {
-  CLI::App* command = app->add_subcommand("ctl", "an operator's commands to running boards");
+void AddCtlCommand(Command* app, int* code) {
+  Command* command = app->add_subcommand("ctl", "an operator's commands to running boards");
   command->require_subcommand(1);
   for (const Request request :
        {Request::kArm, Request::kStart, Request::kHold, Request::kReset, Request::kEstop}) {
     auto options = std::make_shared<Options>();
     options->fleet = DefaultFleet();
-    CLI::App* sub = command->add_subcommand(NameOf(request), TextOf(request));
+    Command* sub = command->add_subcommand(NameOf(request), TextOf(request));
     sub->add_option("--fleet", options->fleet, "fleet file; default: $ARMADA_FLEET or /etc/armada/fleet.toml")
         ->capture_default_str();
     sub->add_option("--arm", options->arms, "id of an arm; may be repeated; default: all")

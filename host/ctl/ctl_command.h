@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// `armada ctl`: an operator's commands to running boards.
-void AddCtlCommand(CLI::App* app, int* code);
+void AddCtlCommand(Command* app, int* code);
 
 }  // namespace armada

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/value_text.h"
 #include "firmware/app/exit_codes.h"
 #include "hil/fault_meaning.h"
@@ -65,9 +66,9 @@ int Send(const Options& options) {
 
 }  // namespace
 
-void AddFaultCommand(CLI::App* app, int* code) {
+void AddFaultCommand(Command* app, int* code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app->add_subcommand("fault", "a fault into a run that goes on, see docs/faults.md");
+  Command* command = app->add_subcommand("fault", "a fault into a run that goes on, see docs/faults.md");
   command->add_option("KIND", options->kind, "kind of the fault")->required();
   command->add_option("--out", options->directory, "directory of the run, as given to `armada run --out`")
       ->capture_default_str();

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// `armada fault`: a fault into a run that goes on.
-void AddFaultCommand(CLI::App* app, int* code);
+void AddFaultCommand(Command* app, int* code);
 
 }  // namespace armada

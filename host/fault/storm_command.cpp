@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/realtime.h"
@@ -117,25 +118,23 @@ int Storm(const Options& options) {
 
 }  // namespace
 
-void AddStormCommand(CLI::App* app, int* code) {
+void AddStormCommand(Command* app, int* code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app->add_subcommand(
+  Command* command = app->add_subcommand(
       "storm", "a stranger on a fleet's network: junk, fragments, replayed and forged messages. For tests");
   auto* fleet = command->add_option("--fleet", options->fleet, "fleet file: its link.lcm_url");
   command->add_option("--url", options->url, "this LCM url")->capture_default_str()->excludes(fleet);
   command->add_option("--rate", options->rate_1_s, "datagrams a second")
-      ->check(CLI::Range(1.0, 1e6))
+      ->range(1.0, 1e6)
       ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "how long")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "how long")->range(1e-3, 1e6)->capture_default_str();
   command
       ->add_option("--wait", options->wait_s,
                    "seconds to wait for a board's first message before it begins; 0: no")
       ->capture_default_str();
   command->add_option("--kind", options->kinds, "only this kind; may be repeated; default: all in turn")
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(AllNames()));
+      ->one_of(AllNames());
   command->add_option("--seed", options->seed, "seed of the junk")->capture_default_str();
   command->add_option("--json", options->json, "write what was sent here, by kind and by channel");
   command->callback([=] { *code = Storm(*options); });

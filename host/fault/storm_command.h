@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
+
+class Command;
 
 /// Adds `armada storm`: somebody who sends a fleet what it must not take. `*code` is the exit code after
 /// parsing.
-void AddStormCommand(CLI::App* app, int* code);
+void AddStormCommand(Command* app, int* code);
 
 }  // namespace armada

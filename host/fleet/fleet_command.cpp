@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "firmware/app/command_line.h"
 #include "firmware/app/config/value_text.h"
 #include "firmware/app/exit_codes.h"
 #include "firmware/core/types.h"
@@ -16,6 +17,12 @@ const std::map<std::string, GraphShape> kShapes = {{"ring", GraphShape::kRing},
                                                    {"line", GraphShape::kLine},
                                                    {"tree", GraphShape::kTree},
                                                    {"random", GraphShape::kRandom}};
+
+std::vector<std::string> ShapeNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, shape] : kShapes) names.push_back(name);
+  return names;
+}
 
 struct FleetOptions {
   std::string shape;
@@ -47,25 +54,21 @@ int Run(FleetOptions options) {
 
 }  // namespace
 
-void AddFleetCommand(CLI::App* app, int* code) {
+void AddFleetCommand(Command* app, int* code) {
   auto options = std::make_shared<FleetOptions>();
   FleetPlan& plan = options->plan;
-  CLI::App* command =
+  Command* command =
       app->add_subcommand("fleet", "print a fleet file: a ring, line, tree or random digraph of arms");
-  command->add_option("SHAPE", options->shape, "ring, line, tree, random")
-      ->required()
-      ->check(CLI::IsMember(kShapes));
+  command->add_option("SHAPE", options->shape, "ring, line, tree, random")->required()->one_of(ShapeNames());
   command->add_option("LIKE", plan.like, "fleet file: its arms in turn, and all else")->required();
-  command->add_option("--arms", plan.arms, "number of arms")
-      ->check(CLI::Range(1, kMaxArms))
-      ->capture_default_str();
+  command->add_option("--arms", plan.arms, "number of arms")->range(1, kMaxArms)->capture_default_str();
   command->add_option("--pins", plan.pins, "the first so many arms hear the leader")
-      ->check(CLI::Range(1, kMaxArms))
+      ->range(1, kMaxArms)
       ->capture_default_str();
   command
       ->add_option("--vary", plan.vary,
                    "vary lengths, masses and inertias of links at random by up to this share")
-      ->check(CLI::Range(0.0, 0.5))
+      ->range(0.0, 0.5)
       ->capture_default_str();
   command->add_option("--seed", plan.seed, "seed of what is random")->capture_default_str();
   command->add_option("--name", plan.name, "name of the fleet; default: SHAPE_<number of arms>");

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace armada {
 
+class Command;
+
 /// Adds `armada fleet`: it prints a fleet file. `*code` is the exit code after parsing.
-void AddFleetCommand(CLI::App* app, int* code);
+void AddFleetCommand(Command* app, int* code);
 
 }  // namespace armada

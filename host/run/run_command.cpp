@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/initial_state.h"

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "firmware/app/exit_codes.h"
 #include "hil/scenario_file.h"

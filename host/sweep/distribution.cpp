@@ -1,5 +1,7 @@
 #include "host/sweep/distribution.h"
 
+#include <nlohmann/json.hpp>
+
 namespace armada {
 
 nlohmann::ordered_json ToJson(const Distribution& distribution) {

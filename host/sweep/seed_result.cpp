@@ -1,5 +1,7 @@
 #include "host/sweep/seed_result.h"
 
+#include <nlohmann/json.hpp>
+
 namespace armada {
 
 using Json = nlohmann::ordered_json;

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "host/sweep/sweep_result.h"

@@ -1,5 +1,7 @@
 #include "host/sweep/sweep_result.h"
 
+#include <nlohmann/json.hpp>
+
 #include "firmware/app/whole_file.h"
 #include "host/shell_quote.h"
 

@@ -1,6 +1,7 @@
 // Faults of a scenario in virtual time: what they do, and that they do nothing else.
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "host/sim/link_faults.h"
 #include "tests/closed_loop/simulate.h"

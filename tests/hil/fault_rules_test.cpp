@@ -9,7 +9,6 @@
 
 #include "hil/fault_meaning.h"
 #include "hil/scenario_file.h"
-#include "hil/scenario_names.h"
 #include "tests/app/config_support.h"
 
 namespace armada {

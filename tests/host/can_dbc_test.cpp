@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "firmware/app/config/enum_names.h"
+#include "firmware/core/named_enum.h"
 #include "host/can/bus_messages.h"
 #include "host/can/dbc.h"
 #include "tests/hil/command_output.h"

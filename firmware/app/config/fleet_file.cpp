@@ -6,7 +6,6 @@
 
 #include "firmware/app/config/fleet_layout.h"
 #include "firmware/app/config/fleet_rules.h"
-#include "firmware/app/config/key_lister.h"
 #include "firmware/app/config/parameter_reader.h"
 #include "firmware/app/config/toml_parser.h"
 #include "firmware/app/config/toml_writer.h"
@@ -95,7 +94,8 @@ std::vector<EffectiveValue> EffectiveValues(const FleetConfig& fleet) {
 }
 
 std::vector<std::string> FleetKeys() {
-  return KeysOf<FleetLayout>();
+  FleetLayout layout;
+  return KeysOf(&layout);
 }
 
 }  // namespace armada

@@ -11,8 +11,7 @@ namespace armada {
 // The fleet file as it is written, table by table. FleetConfig is what it means: see FleetOf and LayoutOf.
 
 struct EdgeLayout : Edge {
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"from", "", 1, kMaxArms, "id of the arm that is listened to"}, from);
     parameter({"to", "", 1, kMaxArms, "id of the arm that listens"}, to);
     parameter({"weight", "", 0, 1e3, "eps_ij of (1.9); 0: not used"}, weight);
@@ -20,8 +19,7 @@ struct EdgeLayout : Edge {
 };
 
 struct PinLayout : Pin {
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"arm", "", 1, kMaxArms, "id of an arm that hears the leader"}, arm);
     parameter({"weight", "", 0, 1e3, "b_i of (1.9); 0: not used"}, weight);
   }
@@ -31,8 +29,7 @@ struct GraphLayout {
   std::vector<PinLayout> pins;
   std::vector<EdgeLayout> edges;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter.List({"pins", "an arm that hears the leader; `pins = [1, 3]` is short for weights of 1"}, pins);
     parameter.List({"edges", "one arm that listens to another"}, edges);
   }
@@ -56,8 +53,7 @@ struct ArmLayout {
   std::vector<JointDriveConfig> joint;
   ControlConfig control;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"id", "", 1, kMaxArms, "number of the arm, unique in the fleet"}, id);
     parameter({"bus", "", 0, 0, "arm's own CAN bus: udp:GROUP:PORT or socketcan:INTERFACE"}, bus);
     parameter.Table("can", can);
@@ -103,8 +99,7 @@ struct FleetLayout {
   std::vector<ArmLayout> arm;
   std::vector<GraphLayout> graph;
 
-  template <class Visitor>
-  void Visit(Visitor& parameter) {
+  void Visit(ParameterVisitor& parameter) {
     parameter({"name", "", 0, 0, "name of the fleet"}, name);
     parameter({"topology_period_s", "s", 0, 1e6, "time for which each of several [[graph]] is used in turn"},
               topology_period_s);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "firmware/app/config/parameter_text.h"
 #include "firmware/app/config/spelling.h"
 
 namespace armada {
@@ -16,15 +16,7 @@ bool Expected(const ConfigCursor& at, const char* what, std::vector<ConfigError>
   return false;
 }
 
-}  // namespace
-
-std::string NumbersText(const ParameterInfo& info) {
-  return ValueText(info.min) + " to " + ValueText(info.max);
-}
-
-std::string RangeText(const ParameterInfo& info) {
-  return *info.unit == '\0' ? NumbersText(info) : NumbersText(info) + " " + info.unit;
-}
+// Read one value: true and `*value` set, or an error at `at` that names what was given and what is allowed.
 
 bool ReadValue(const ConfigCursor& at, const ParameterInfo&, bool* value, std::vector<ConfigError>* errors) {
   if (at.node().kind != Kind::kBool) return Expected(at, "true or false", errors);
@@ -107,22 +99,92 @@ bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, std::vector<in
   return good;
 }
 
-ConfigCursor ParameterReader::Take(const char* key) {
-  known_.emplace_back(key);
-  return table_.At(key);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo& info, NumberList* value,
+               std::vector<ConfigError>* errors) {
+  std::vector<double> given;
+  if (!ReadValue(at, info, &given, errors)) return false;
+  if (given.empty() || given.size() > value->max_count) {
+    Report(at,
+           "given " + std::to_string(given.size()) + " values, allowed are 1 to " +
+               std::to_string(value->max_count),
+           errors);
+    return false;
+  }
+  value->values = given;
+  return true;
 }
 
-bool ParameterReader::IsKind(const ConfigCursor& at, Kind kind, const char* expected) {
-  return !at.found() || at.node().kind == kind || Expected(at, expected, errors_);
+bool ReadValue(const ConfigCursor& at, const ParameterInfo&, Choice* value,
+               std::vector<ConfigError>* errors) {
+  const ConfigNode& node = at.node();
+  for (const Choice::Name& name : value->names) {
+    if (node.kind != Kind::kText || std::get<std::string>(node.value) != name.name) continue;
+    value->value = name.value;
+    return true;
+  }
+  Report(at, "given " + node.Describe() + ", allowed are " + AllNames(*value), errors);
+  return false;
 }
 
-void ParameterReader::Finish() {
-  if (!table_.found()) return;
-  for (const ConfigNode& child : table_.node().children) {
-    if (std::find(known_.begin(), known_.end(), child.key) == known_.end()) {
-      Report(table_.Child(child.key), UnknownKeyMessage(child.key, known_), errors_);
+/// Fills one table.
+class ParameterReader final : public ParameterVisitor {
+ public:
+  ParameterReader(const ConfigCursor& table, std::vector<ConfigError>* errors)
+      : table_(table), errors_(errors) {}
+
+  void Read(const ParameterTable& config) {
+    config.Visit(*this);
+    if (!table_.found()) return;
+    for (const ConfigNode& child : table_.node().children) {
+      if (std::find(known_.begin(), known_.end(), child.key) == known_.end()) {
+        Report(table_.Child(child.key), UnknownKeyMessage(child.key, known_), errors_);
+      }
     }
   }
+
+ private:
+  void OnValue(const ParameterInfo& info, const ParameterValue& value) override {
+    const ConfigCursor at = Take(info.key);
+    if (at.found()) {
+      std::visit([&](auto* member) { ReadValue(at, info, member, errors_); }, value);
+    } else if (IsRequired(info, value)) {
+      Report(at, std::string("missing; it is the ") + info.meaning, errors_);
+    }
+  }
+
+  void OnTable(const char* name, const ParameterTable& table) override {
+    const ConfigCursor at = Take(name);
+    if (IsKind(at, Kind::kTable, "a table")) ParameterReader(at, errors_).Read(table);
+  }
+
+  void OnList(const ListInfo& info, ParameterList& list) override {
+    const ConfigCursor at = Take(info.key);
+    if (!at.found() || !IsKind(at, Kind::kArray, "a list of tables")) return;
+    list.Reset(at.node().children.size());
+    for (size_t i = 0; i < list.size(); ++i) {
+      const ConfigCursor element = at.Element(i);
+      if (IsKind(element, Kind::kTable, "a table")) ParameterReader(element, errors_).Read(list.Element(i));
+    }
+  }
+
+  ConfigCursor Take(const char* key) {
+    known_.emplace_back(key);
+    return table_.At(key);
+  }
+  /// True as well for a table that is left out: all its values are then at their defaults.
+  bool IsKind(const ConfigCursor& at, Kind kind, const char* expected) {
+    return !at.found() || at.node().kind == kind || Expected(at, expected, errors_);
+  }
+
+  ConfigCursor table_;
+  std::vector<ConfigError>* errors_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace
+
+void ReadConfig(const ConfigNode& root, const ParameterTable& config, std::vector<ConfigError>* errors) {
+  ParameterReader(ConfigCursor(root), errors).Read(config);
 }
 
 }  // namespace armada

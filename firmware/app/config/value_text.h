@@ -5,8 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/app/config/enum_names.h"
-#include "firmware/core/types.h"
+#include "firmware/core/named_enum.h"
 
 namespace armada {
 
@@ -42,12 +41,5 @@ std::string ValueText(const std::vector<Element>& values) {
 
 /// To three decimals, for messages.
 std::string RoundedText(double value);
-
-/// One value stands for all: written as a number.
-template <int kMaxRows>
-std::string ValueText(const BoundedVector<kMaxRows>& values) {
-  if (values.size() == 1) return ValueText(values[0]);
-  return ValueText(std::vector<double>(values.begin(), values.end()));
-}
 
 }  // namespace armada

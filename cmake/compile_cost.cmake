@@ -1,0 +1,45 @@
+# What compiling costs: how far code is optimised, and which headers come precompiled. docs/development.md has figures.
+#
+#   armada_hot_code(TARGET...)   what runs in every tick of a board, of an emulation or of a simulation
+#   armada_cold_code(TARGET...)  what runs once or for people: configuration, command lines, reports, checks, tests
+
+option(ARMADA_PCH "Precompile headers that are not ours" ON)
+
+# Boards and sweeps spend no time in cold code.
+add_library(armada_cold INTERFACE)
+target_compile_options(armada_cold INTERFACE $<$<CONFIG:Release>:-O1>)
+
+# Our own headers change too often, and a source must name what it uses. GCC 12 instantiates what a precompiled header
+# has left open in every source anew: with Eigen, GoogleTest, nlohmann/json or CLI11 in it, it becomes slower. Clang
+# does not.
+set(armada_precompiled
+  <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <iostream> <map> <memory> <optional>
+  <sstream> <string> <string_view> <variant> <vector>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  list(APPEND armada_precompiled <Eigen/Core>)
+endif()
+foreach(kind hot cold)
+  add_library(armada_${kind}_headers OBJECT ${CMAKE_CURRENT_LIST_DIR}/headers.cpp)
+  target_link_libraries(armada_${kind}_headers PRIVATE armada_options)
+  if(ARMADA_PCH)
+    target_precompile_headers(armada_${kind}_headers PRIVATE ${armada_precompiled})
+  endif()
+endforeach()
+target_link_libraries(armada_cold_headers PRIVATE armada_cold)
+
+function(armada_hot_code)
+  if(ARMADA_PCH)
+    foreach(target IN LISTS ARGN)
+      target_precompile_headers(${target} REUSE_FROM armada_hot_headers)
+    endforeach()
+  endif()
+endfunction()
+
+function(armada_cold_code)
+  foreach(target IN LISTS ARGN)
+    target_link_libraries(${target} PRIVATE armada_cold)
+    if(ARMADA_PCH)
+      target_precompile_headers(${target} REUSE_FROM armada_cold_headers)
+    endif()
+  endforeach()
+endfunction()

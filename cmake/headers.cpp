@@ -1,0 +1,1 @@
+// Nothing but a source for the targets that precompile headers.
