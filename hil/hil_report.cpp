@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/app/whole_file.h"
-#include "hil/scenario_names.h"
 
 namespace armada {
 namespace {

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "hil/fault_meaning.h"
-#include "hil/scenario_names.h"
 #include "host/run/board_lateness.h"
 
 namespace armada {
