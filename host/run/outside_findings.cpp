@@ -13,14 +13,21 @@ double Length_s(const Stall& stall) {
   return 1e-9 * static_cast<double>(stall.end_ns - stall.begin_ns);
 }
 
-// A tick well within a stall is of a board that went on.
+// Whether the boards ticked throughout: without a pause of half the stall. Too short a stall tells nothing.
 bool BoardsWentOn(const RunEvidence& evidence, const Stall& stall) {
-  const auto margin_ns = static_cast<int64_t>(2e9 * evidence.scenario->fleet.timing.period_s);
-  return std::any_of(evidence.arms.begin(), evidence.arms.end(), [&](const RunEvidence::Arm& arm) {
-    return std::any_of(arm.ticks.begin(), arm.ticks.end(), [&](const telemetry_t& tick) {
-      return tick.stamp_ns > stall.begin_ns + margin_ns && tick.stamp_ns < stall.end_ns - margin_ns;
-    });
-  });
+  const auto period_ns = static_cast<int64_t>(1e9 * evidence.scenario->fleet.timing.period_s);
+  const int64_t length_ns = stall.end_ns - stall.begin_ns;
+  if (length_ns < 4 * period_ns) return false;
+  std::vector<int64_t> ticks_ns = {stall.begin_ns, stall.end_ns};
+  for (const RunEvidence::Arm& arm : evidence.arms) {
+    for (const telemetry_t& tick : arm.ticks) {
+      if (tick.stamp_ns > stall.begin_ns && tick.stamp_ns < stall.end_ns) ticks_ns.push_back(tick.stamp_ns);
+    }
+  }
+  std::sort(ticks_ns.begin(), ticks_ns.end());
+  int64_t pause_ns = 0;
+  for (size_t i = 1; i < ticks_ns.size(); ++i) pause_ns = std::max(pause_ns, ticks_ns[i] - ticks_ns[i - 1]);
+  return 2 * pause_ns < length_ns;
 }
 
 std::string StallText(const RunEvidence& evidence, const Stall& stall) {

@@ -110,6 +110,12 @@ TEST_F(DiagnosisTest, AStallThroughWhichBoardsTickedIsNotOfTheMachine) {
   EXPECT_EQ(findings[0].text, "`armada run` stood still, while boards went on, for 0.312 s at 5.204 s");
 }
 
+TEST_F(DiagnosisTest, BoardsThatWakeALittleBeforeTheHeartbeatDidNotGoOn) {
+  evidence_.stalls = {{At(5.204), At(5.516), 2, 0}};
+  for (const int id : {3, 7}) Miss(id, 545, 24);  // 5.21 to 5.44 s
+  EXPECT_THAT(Result()[0].text, HasSubstr("the machine stood still"));
+}
+
 TEST_F(DiagnosisTest, AStallOfOneProcessorAndAHeartbeatWithoutPriorityAreCalledSo) {
   evidence_.stalls = {{At(-0.3), At(-0.25), 1, 1}};
   evidence_.heartbeat_is_foremost = false;
