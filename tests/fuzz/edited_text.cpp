@@ -8,7 +8,7 @@
 namespace armada {
 namespace {
 
-constexpr size_t kMostBytes = 64 * 1024;  // files stay small, however often a line is repeated
+constexpr size_t kMostBytes = size_t{64} * 1024;  // files stay small, however often a line is repeated
 
 constexpr auto kValues = std::to_array<const char*>({"0",
                                                      "1",
