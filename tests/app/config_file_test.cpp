@@ -7,6 +7,7 @@
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/config/spelling.h"
 #include "firmware/app/config/toml_parser.h"
+#include "firmware/app/config/value_text.h"
 #include "tests/app/config_support.h"
 
 namespace armada {
