@@ -53,7 +53,8 @@ class Command {
 
   Command* add_subcommand(const std::string& name, const std::string& help);
   Command* add_option_group(const std::string& name);
-  /// `Value`: int, int64_t, uint64_t, double, optional<double>, string, vector<string> or vector<int>.
+  /// `Value`: int, int64_t, uint64_t, double, string, optional<int>, optional<double>, vector<string> or
+  /// vector<int>.
   template <class Value>
   Option* add_option(const std::string& name, Value& value, const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
