@@ -150,8 +150,7 @@ int Run(const Options& options) {
   std::cout << "armada-leader: " << kLeaderChannel << " at " << rate_hz << " Hz on " << ToString(*url)
             << ", epoch " << epoch_ns << " ns" << std::endl;
   const Tally tally =
-      Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm,
-              *clock);
+      Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm, *clock);
   std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
             << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
   return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;

@@ -11,8 +11,8 @@
 namespace armada {
 
 /// Opens the bus that `name` stands for (see ParseBusName). On failure returns null and writes one message
-/// that says what to do. The user-space bus carries everything and needs no options; a bus of the kernel has the
-/// machine's clock, whatever `clock` is, which outlives the object. Start-up only: it allocates.
+/// that says what to do. The user-space bus carries everything and needs no options; a bus of the kernel has
+/// the machine's clock, whatever `clock` is, which outlives the object. Start-up only: it allocates.
 std::unique_ptr<CanBus> OpenBus(std::string_view name, const BusOptions& options, Clock* clock,
                                 std::string* error);
 

@@ -250,8 +250,7 @@ void SocketCanBus::ReadControl(const msghdr& message, CanFrame* frame) {
     if (header->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-      frame->stamp_ns =
-          MonotonicOfWall(Nanoseconds(stamp), Now_ns(CLOCK_REALTIME), Now_ns(CLOCK_MONOTONIC));
+      frame->stamp_ns = MonotonicOfWall(Nanoseconds(stamp), Now_ns(CLOCK_REALTIME), Now_ns(CLOCK_MONOTONIC));
     } else if (header->cmsg_type == SO_RXQ_OVFL) {
       uint32_t overflowed = 0;
       std::memcpy(&overflowed, CMSG_DATA(header), sizeof overflowed);

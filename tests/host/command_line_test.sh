@@ -182,6 +182,26 @@ wait $run
 [ $? = 130 ] || fail "an interrupted run must exit 130: $(cat "$work/out")"
 wait_for 10 none_left || fail "Ctrl-C left processes behind: $(pgrep -af "$work/")"
 
+# A program that a signal ends early is named, though it ended well.
+"$armada" run "$scenario" --seconds 60 --time stepped --out "$work/ended" >"$work/out" 2>&1 &
+run=$!
+wait_for 20 all_up || fail "the arms did not start: $(cat "$work/out")"
+until pkill -TERM -f "armada-leader $work/ended/"; do read -rt 0.05 <> <(:) || true; done
+wait $run
+[ $? = 1 ] || fail "a run whose leader was ended must exit 1: $(cat "$work/out")"
+grep -q 'leader (pid [0-9]*) ended before the run did' "$work/out" || fail "the message must name the leader: $(cat "$work/out")"
+
+# Without standard output; and as a user without rights, in a network without a route.
+short=("$armada" run "$scenario" --seconds 1 --set window_start_s=0.5 --time stepped --pace 0)
+"${short[@]}" --out "$work/silent" >&- 2>"$work/out"
+[ $? -le 1 ] && [ -s "$work/silent/metrics.json" ] || fail "a run without standard output: $(cat "$work/out")"
+if [ "$(id -u)" = 0 ]; then
+  install -d -m 777 "$work/nobody" && chmod 755 "$work"
+  unshare --net setpriv --reuid 65534 --regid 65534 --clear-groups env HOME="$work/nobody" "${short[@]}" \
+    --out "$work/nobody/run" >"$work/out" 2>&1
+  [ $? -le 1 ] && [ -s "$work/nobody/run/metrics.json" ] || fail "a run of a user without rights: $(cat "$work/out")"
+fi
+
 for time in real stepped; do
   "$armada" run "$scenario" --seconds 60 --time $time --out "$work/crashed" >"$work/out" 2>&1 &
   run=$!

@@ -39,7 +39,9 @@ class SteppedTimeTest : public PrivateNetworkTest {
     argv.insert(argv.end(), role.begin(), role.end());
     const auto of_time = time_->ArgumentsFor(name);
     argv.insert(argv.end(), of_time.begin(), of_time.end());
-    ASSERT_TRUE(group_.Start({name, argv, {}, folder_.path() / (name + ".txt")}, &error_)) << error_;
+    ASSERT_TRUE(
+        group_.Start({name, argv, {}, folder_.path() / (name + ".txt"), time_->descriptor()}, &error_))
+        << error_;
   }
   void Await() { ASSERT_TRUE(time_->AwaitPrograms(&group_, &error_)) << error_; }
   std::string Log(const std::string& name) const { return folder_.path() / (name + ".log"); }
@@ -233,6 +235,24 @@ TEST_F(SteppedTimeTest, AMessageThatNeverComesIsNoticed) {
   EXPECT_EQ(time_->lost(), 1u);
   EXPECT_EQ(bus->Receive(0, &frame), BusStatus::kTimeout);
   EXPECT_EQ(time_->lost(), 1u) << "once";
+}
+
+TEST_F(SteppedTimeTest, MessagesOfStrangersAreCountedAndTheOthersKeepTheirTimes) {
+  Begin();
+  Start("speaker", {"speak", "10", "3"});
+  Start("reader", {"read", "25", "50"});
+  Await();
+  const auto stranger = OpenBus("udp:239.74.163.77:43177", {}, MachineClock::Get(), &error_);
+  ASSERT_NE(stranger, nullptr) << error_;
+  PassUntil(26);
+  CanFrame frame;
+  frame.id = 77;
+  ASSERT_EQ(stranger->Send(frame), BusStatus::kOk);
+  PassUntil(30);
+  EXPECT_EQ(LogOf("reader"),
+            "25.000 read 0 10.000\n25.000 read 1 20.000\n50.000 read 77 30.000\n50.000 read 2 50.000\n");
+  EXPECT_EQ(time_->strangers(), 1u);
+  EXPECT_EQ(time_->lost(), 0u);
 }
 
 TEST_F(SteppedTimeTest, PacedItIsNeverAheadOfTheMachine) {
