@@ -117,7 +117,7 @@ void Command::require_subcommand(int count) {
 }
 
 void Command::require_option(int count) {
-  app_->require_option(static_cast<size_t>(count));
+  app_->require_option(count);
 }
 
 void Command::callback(std::function<void()> callback) {

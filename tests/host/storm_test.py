@@ -28,7 +28,7 @@ def storm_over_a_run(programs, source, folder):
          "--set", "window_start_s=5", "--out", folder / "run"],
         capture_output=True, text=True, timeout=120)
     output, _ = storm.communicate(timeout=60)
-    assert storm.returncode == 0, output
+    assert storm.returncode == 0, output + run.stdout + run.stderr
     assert run.returncode in (0, 1), run.stdout + run.stderr
     return json.loads((folder / "run/metrics.json").read_text()), json.loads(sent.read_text())
 
