@@ -50,8 +50,8 @@ def own_sources(builds):
     return flags
 
 
-def files_read(builds):
-    """For each source the files its compilation read; the first one that Ninja names is the source."""
+def files_read(builds, sources):
+    """For each source the files its compilation read. Ninja may name other files before it, as a sanitizer's list."""
     read = {}
     for build in builds:
         command = ["ninja", "-C", build, "-t", "deps"]
@@ -59,8 +59,9 @@ def files_read(builds):
         for block in listing.split("\n\n"):
             lines = block.splitlines()[1:]
             paths = [pathlib.Path(os.path.normpath(build / line.strip())) for line in lines]
-            if paths:
-                read.setdefault(paths[0], paths)
+            source = next((path for path in paths if path in sources), None)
+            if source:
+                read.setdefault(source, paths)
     return read
 
 
@@ -92,8 +93,8 @@ def main():
     cache, *builds = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     cache.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True, text=True).stdout
-    read = files_read(builds)
     flags = own_sources(builds)
+    read = files_read(builds, flags)
 
     def passed_marker(source):
         configs = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
