@@ -22,7 +22,7 @@ namespace armada {
 namespace {
 
 constexpr size_t kLogTailLines = 10;
-constexpr off_t kLastWordsBytes = 16 * 1024;  // room that each log has from the start
+constexpr off_t kLastWordsBytes = off_t{16} * 1024;  // room that each log has from the start
 constexpr std::chrono::seconds kDestructorGrace{2};
 
 // What the signal handler touches: lock-free, and alive for the whole process.

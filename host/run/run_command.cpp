@@ -529,9 +529,9 @@ std::string CheckTime(const RunOptions& options, const ScenarioConfig& scenario)
   if (url && url->ttl > 0)
     return "--time stepped: link.lcm_url has ttl=" + std::to_string(url->ttl) + ", other boards do not wait";
   for (const FaultConfig& fault : scenario.faults) {
-    if (fault.kind == FaultKind::kCpuHog)
-      std::cerr << "armada run: fault cpu_hog at " << fault.at_s
-                << " s is left out: computing takes no stepped time\n";
+    if (fault.kind != FaultKind::kCpuHog) continue;
+    std::cerr << "armada run: fault cpu_hog at " << fault.at_s
+              << " s is left out: computing takes no stepped time\n";
   }
   return error;
 }
