@@ -26,9 +26,9 @@ RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_
   evidence.hil = ReadIfThere(directory + "/hil.json");
   const Json benches = evidence.hil.is_object() ? evidence.hil.value("arms", Json::array()) : Json::array();
   for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
-    const std::string id = std::to_string(scenario.fleet.arms[i].id);
-    evidence.arms.push_back({recorder.Ticks(i), ReadIfThere(directory + "/arm_" + id + ".json"),
-                             i < benches.size() ? benches[i] : Json()});
+    const std::string file = "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json";
+    evidence.arms.push_back(
+        {recorder.Ticks(i), ReadIfThere(directory + file), i < benches.size() ? benches[i] : Json()});
   }
   if (faults != nullptr) evidence.faults_made = faults->made();
   evidence.real_time = heartbeat != nullptr;
