@@ -90,6 +90,7 @@ void JointSet::Reset() {
 
 void JointSet::ExpectNewSamples(int64_t now_ns) {
   request_ns_ = now_ns;
+  if (first_request_ns_ == 0) first_request_ns_ = now_ns;
   for (size_t i = 0; i < drives_.size(); ++i) sequence_at_request_[i] = drives_[i]->sample().sequence;
 }
 
@@ -157,15 +158,18 @@ void JointSet::ReadAt(int64_t tick_ns, int64_t epoch_ns, const JointVector& sent
       believed_[i] = newest;
     }
     const JointSample& sample = believed_[i];
-    const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - sample.stamp_ns);
+    // A drive may take as long for its first answer as for any other.
+    const bool answered = sample.sequence != 0;
+    const int64_t since_ns = answered ? sample.stamp_ns : first_request_ns_;
+    const double age_s = is_fresh ? 0.0 : Seconds(sample_ns - since_ns);
     const bool in_torque = IsInTorqueMode(*drives_[i]);
     was_in_torque_[i] = was_in_torque_[i] || in_torque;
     all_good = all_good && is_fresh;
     const bool braked = !asked_[i];
-    const bool stale = sample.sequence == 0 || (age_s > timing_.feedback_stale_s && !braked);
-    if (stale) {
+    const bool stale = age_s > timing_.feedback_stale_s && !(braked && answered);
+    if (stale) input->causes.Add(nonsense_since_complete_ ? Cause::kFeedbackNonsense : Cause::kFeedbackStale);
+    if (stale || !answered) {
       input->samples_valid = false;
-      input->causes.Add(nonsense_since_complete_ ? Cause::kFeedbackNonsense : Cause::kFeedbackStale);
       continue;
     }
     input->causes.Set(Cause::kSampleLate, age_s > supervisor_.feedback_late_s && !braked);

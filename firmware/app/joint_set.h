@@ -68,6 +68,7 @@ class JointSet {
   std::vector<bool> prepared_;
   std::vector<bool> asked_;  ///< for a sample, in this tick
   int64_t request_ns_ = 0;
+  int64_t first_request_ns_ = 0;
   std::array<uint64_t, kMaxDof> sequence_at_request_{};
   bool nonsense_since_complete_ = false;
   int64_t malformed_frames_ = 0;

@@ -58,10 +58,10 @@ JointVector ArmController::Step(const ArmInput& in) {
   causes |= watch_.Update({in.q_rad, status_.error_m, status_.sigma_min, gate_.saturated(), Follows(before),
                            before == ControllerState::kHold, estimator_.synced()},
                           h);
-  const ControllerState state =
-      supervisor_.Step({causes, in.request, in.drives_ready, in.drives_enabled, in.samples_good,
-                        in.neighbours_good, estimator_.synced(), in.dq_rad_s.cwiseAbs().maxCoeff()},
-                       h);
+  const ControllerState state = supervisor_.Step(
+      {causes, in.request, in.drives_ready, in.drives_enabled, in.samples_valid, in.samples_good,
+       in.neighbours_good, estimator_.synced(), in.dq_rad_s.cwiseAbs().maxCoeff()},
+      h);
 
   // Its gate and the limits come last.
   const JointVector sent_Nm = gate_.Update(TorqueOf(state, law_Nm, in));

@@ -89,7 +89,8 @@ inline constexpr std::array<CauseRule, kCauses> kCauseRules = {{
     {Cause::kEstop, ControllerState::kSafeStop, false, "operator: e-stop",
      "`armada ctl estop`; from INIT and MONITOR at once to FAULT"},
     {Cause::kFeedbackStale, ControllerState::kFault, false, "feedback stale",
-     "a joint's newest sample is older than `timing.feedback_stale_s`"},
+     "a joint's newest sample, or while it has none the first request for one, is older than "
+     "`timing.feedback_stale_s`"},
     {Cause::kFeedbackNonsense, ControllerState::kFault, false, "feedback makes no sense",
      "the same, and the drive has sent what no drive would send, or positions that no joint could reach; or "
      "position and speed of a joint contradict each other (`control.sensor.consistent_*`)"},

@@ -114,7 +114,7 @@ bool Supervisor::IsActive(Trigger trigger, const SupervisorInput& in, Cause wors
     case Trigger::kDrivesEnabled:
       return in.drives_enabled;
     case Trigger::kStartedRunning:
-      return start_ == StartMode::kRunning && in.drives_enabled;
+      return start_ == StartMode::kRunning && in.drives_enabled && in.samples_valid;
     case Trigger::kArm:
       return accepted(Request::kArm);
     case Trigger::kStart:

@@ -199,7 +199,8 @@ struct SupervisorInput {
   Request request = Request::kNone;
   bool drives_ready = false;     ///< found and configured, watchdogs included
   bool drives_enabled = false;   ///< all in torque mode
-  bool samples_good = false;     ///< of every joint, for control.supervisor.good_samples
+  bool samples_valid = false;    ///< of every joint, or predicted
+  bool samples_good = false;     ///< new ones of every joint, for control.supervisor.good_samples
   bool neighbours_good = false;  ///< the same of every neighbour, with the same fleet file
   bool synced = false;           ///< the estimate may be used for motion
   double speed_rad_s = 0.0;      ///< of the fastest joint

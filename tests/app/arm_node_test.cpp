@@ -201,6 +201,25 @@ TEST(FrozenFeedback, AJointThatIsPushedMayNotRepeatForLong) {
   EXPECT_TRUE(feedback.Update(1.0, 0.0, -150.0, 0.01));
 }
 
+TEST_F(Board, WaitsForADrivesFirstSampleAsForAnyOther) {
+  deaf_to_ = 2;
+  Tick(0);
+  EXPECT_EQ(node_.state(), ControllerState::kInit);
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+  deaf_to_ = 0;
+  Tick(1);
+  EXPECT_EQ(node_.state(), ControllerState::kRun);
+}
+
+TEST_F(Board, StopsWhenADriveNeverAnswers) {
+  deaf_to_ = 2;
+  int64_t k = 0;
+  while (k < 10 && node_.state() != ControllerState::kFault) Tick(k++);
+  EXPECT_EQ(k, 4) << "30 ms after the first request it is older than feedback_stale_s";
+  EXPECT_EQ(node_.cause(), Cause::kFeedbackStale);
+  EXPECT_EQ(bench_.Torque(), PlanarPlant::Joints{});
+}
+
 TEST_F(Board, KeepsEstimatingForItsNeighboursWhenItFails) {
   for (int64_t k = 0; k < 200; ++k) Tick(k);
   deaf_to_ = 2;

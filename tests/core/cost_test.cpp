@@ -23,7 +23,8 @@ TEST(Cost, OfTheSupervisorIsAtMostAMicrosecondATick) {
                         .follows = true,
                         .synced = true};
   SupervisorInput in;
-  in.drives_ready = in.drives_enabled = in.samples_good = in.neighbours_good = in.synced = true;
+  in.drives_ready = in.drives_enabled = true;
+  in.samples_valid = in.samples_good = in.neighbours_good = in.synced = true;
   EXPECT_LT(Cost_us("supervisor and motion watch, a tick",
                     [&] {
                       in.causes = watch.Update(seen, 0.01);

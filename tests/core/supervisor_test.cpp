@@ -14,7 +14,8 @@ constexpr double kPeriod_s = 0.01;
 
 SupervisorInput Quiet() {
   SupervisorInput in;
-  in.drives_ready = in.drives_enabled = in.samples_good = in.neighbours_good = in.synced = true;
+  in.drives_ready = in.drives_enabled = true;
+  in.samples_valid = in.samples_good = in.neighbours_good = in.synced = true;
   return in;
 }
 
@@ -241,6 +242,9 @@ TEST_F(Supervised, TheLawTakesOverGraduallyAfterAStart) {
 
 TEST_F(Supervised, AnEmulatedArmMayStartRunningButOnlyOnce) {
   supervisor_ = Supervisor(config_, StartMode::kRunning);
+  SupervisorInput unheard = Quiet();
+  unheard.samples_valid = false;
+  EXPECT_EQ(Step(unheard), State::kInit) << "no sample yet";
   EXPECT_EQ(Step(Quiet()), State::kRun);
   EXPECT_EQ(supervisor_.law_share(), 1.0);
   Step(With(Cause::kBusOff));
