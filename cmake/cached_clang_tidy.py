@@ -4,7 +4,7 @@
 usage: cached_clang_tidy.py CACHE_DIR BUILD_DIR...
 
 Each BUILD_DIR is an up-to-date Ninja build with compile_commands.json; a source is checked as the first build that has
-it compiles it, but without the compiler's precompiled headers.
+it compiles it, alone or in a batch of CMake's, but without the compiler's precompiled headers.
 
 Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources with the same
 flags are checked in batches, as one translation unit. A batch that passes shows that each of its sources would: no check
@@ -13,7 +13,7 @@ not pass, or does not compile as one, is halved, so that what is reported comes 
 
 A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: its compile
 command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read
-for it (Ninja's record). Findings go to standard error, exit code 1.
+for it, or for the headers of its batch (Ninja's record). Findings go to standard error, exit code 1.
 """
 
 import concurrent.futures
@@ -36,6 +36,13 @@ PRECOMPILED = re.compile(r" (-Winvalid-pch|-fpch-instantiate-templates|-Xclang -
 
 DECLARED = re.compile(r"^(?!namespace|using)[a-zA-Z][^(={;/]*?[ *&](\w+) *(?:[({=;\[]|:(?!:))", re.MULTILINE)
 USED = re.compile(r"^ *using [\w:]+::(\w+);", re.MULTILINE)
+INCLUDED = re.compile(r'^#include "(.*)"$', re.MULTILINE)
+
+
+def sources_of(unit, build):
+    """The sources of a translation unit: itself, or those of a batch that CMake has made."""
+    batched = unit.is_relative_to(build) and unit.name.startswith("unity_")
+    return [pathlib.Path(path) for path in INCLUDED.findall(unit.read_text())] if batched else [unit]
 
 
 def own_sources(builds):
@@ -43,25 +50,24 @@ def own_sources(builds):
     flags = {}
     for build in builds:
         for entry in json.loads((build / "compile_commands.json").read_text()):
-            source = pathlib.Path(entry["file"])
-            if source.is_relative_to(ROOT) and not any(source.is_relative_to(made) for made in builds):
-                command = PRECOMPILED.sub("", entry["command"].partition(" -o ")[0] + " ")
-                flags.setdefault(source, tuple(shlex.split(command)[1:]))
+            command = PRECOMPILED.sub("", entry["command"].partition(" -o ")[0] + " ")
+            for source in sources_of(pathlib.Path(entry["file"]), build):
+                if source.is_relative_to(ROOT) and not any(source.is_relative_to(made) for made in builds):
+                    flags.setdefault(source, tuple(shlex.split(command)[1:]))
     return flags
 
 
 def files_read(builds, sources):
-    """For each source the files its compilation read. Ninja may name other files before it, as a sanitizer's list."""
+    """For each source what its compilation read, less the other sources of its batch."""
     read = {}
     for build in builds:
         command = ["ninja", "-C", build, "-t", "deps"]
         listing = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for block in listing.split("\n\n"):
-            lines = block.splitlines()[1:]
-            paths = [pathlib.Path(os.path.normpath(build / line.strip())) for line in lines]
-            source = next((path for path in paths if path in sources), None)
-            if source:
-                read.setdefault(source, paths)
+            paths = [pathlib.Path(os.path.normpath(build / line.strip())) for line in block.splitlines()[1:]]
+            for source in paths:
+                if source in sources:
+                    read.setdefault(source, [path for path in paths if path == source or path not in sources])
     return read
 
 

@@ -2,8 +2,10 @@
 #
 #   armada_hot_code(TARGET...)   what runs in every tick of a board, of an emulation or of a simulation
 #   armada_cold_code(TARGET...)  what runs once or for people: configuration, command lines, reports, checks, tests
+#   armada_in_batches(TARGET...) sources are compiled a few at a time, as one
 
 option(ARMADA_PCH "Precompile headers that are not ours" ON)
+option(ARMADA_BATCHES "Compile several sources at once, where a target says so" ON)
 
 # Boards and sweeps spend no time in cold code.
 add_library(armada_cold INTERFACE)
@@ -45,4 +47,10 @@ function(armada_cold_code)
       target_precompile_headers(${target} REUSE_FROM armada_cold_headers)
     endif()
   endforeach()
+endfunction()
+
+# What templates of the standard library and of Eigen instantiate is shared by a batch. Names of one batch must not clash,
+# those in unnamed namespaces included: give helpers that two sources have the same name one place, or two names.
+function(armada_in_batches)
+  set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ${ARMADA_BATCHES} UNITY_BUILD_BATCH_SIZE 6)
 endfunction()

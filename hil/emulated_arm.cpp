@@ -5,12 +5,12 @@
 
 #include "hil/faulty_drive.h"
 #include "hil/random.h"
+#include "hil/same_instant.h"
 
 namespace armada {
 namespace {
 
 // Events closer together than this are one: below it, differences of times are rounding.
-constexpr double kSameInstant_s = 1e-9;
 
 }  // namespace
 

@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "hil/random.h"
+#include "hil/same_instant.h"
 
 namespace armada {
 namespace {
 
 // Instants closer together than this are one: the run's time is a sum of others.
-constexpr double kSameInstant_s = 1e-9;
 
 bool IsOfWire(FaultKind kind) {
   return kind == FaultKind::kBusLoss || kind == FaultKind::kBusDelay || kind == FaultKind::kBusOff ||

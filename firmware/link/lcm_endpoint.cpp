@@ -145,18 +145,18 @@ std::optional<LcmMessage> LcmEndpoint::Read(int index) {
 }
 
 int64_t LcmEndpoint::ReadControl(msghdr* header) {
-  timespec stamp = Timespec(clock_->WallNow());
+  std::optional<timespec> stamp;
   for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
     if (item->cmsg_level != SOL_SOCKET) continue;
     if (item->cmsg_type == SCM_TIMESTAMPNS) {
-      std::memcpy(&stamp, CMSG_DATA(item), sizeof(stamp));
+      std::memcpy(&stamp.emplace(), CMSG_DATA(item), sizeof(timespec));
     } else if (item->cmsg_type == SO_RXQ_OVFL) {
       uint32_t dropped = 0;
       std::memcpy(&dropped, CMSG_DATA(item), sizeof(dropped));
       counters_.overflowed = dropped;
     }
   }
-  return arrival_.ToMonotonic(clock_->ArrivalOf(socket_, stamp));
+  return arrival_.ToMonotonic(clock_->ArrivalOf(socket_, stamp ? *stamp : Timespec(clock_->WallNow())));
 }
 
 }  // namespace armada

@@ -2,20 +2,16 @@
 
 #include <algorithm>
 
+#include "hil/same_instant.h"
+#include "host/campaign/told_state.h"
+
 namespace armada {
 namespace {
-
-// As on the wire (docs/lcm.md), in words of its own.
-enum Told { kInit, kMonitor, kArming, kRun, kDegraded, kHold, kSafeStop, kFault };
 
 constexpr double kStartsBefore_s = 0.05;  // emulated fleets that start running do it at once
 constexpr double kStartWithin_s = 1.2;    // a request is worth nothing after a second
 constexpr double kArmWithin_s = 4.5;      // and arming takes up to three
-constexpr double kSameInstant_s = 1e-9;
 
-bool Follows(int told) {
-  return told == kRun || told == kDegraded;
-}
 bool IsPowered(int told) {
   return Follows(told) || told == kArming || told == kHold || told == kSafeStop;
 }

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/campaign/told_state.h"
 #include "host/campaign/trial.h"
 
 namespace armada {
 namespace {
-
-// As on the wire (docs/lcm.md), in words of its own.
-constexpr int kRun = 3;
-constexpr int kDegraded = 4;
 
 constexpr double kHoldWithin_s = 0.110;
 constexpr double kTick_s = 0.010;  // a state is told with the next tick
@@ -72,7 +69,7 @@ std::vector<bool> FollowingJudge::ToldIn(double from_s, double to_s) const {
 
 void FollowingJudge::OnState(size_t index, double t_s, int state) {
   Arm& arm = arms_[index];
-  const bool follows = state == kRun || state == kDegraded;
+  const bool follows = Follows(state);
   if (!follows) arm.near_s = 0.0;
   // Where messages are lost at random, more of them must be missing before a silence is one.
   if (facts_.loses_messages() || facts_.IsTouched(index)) return;

@@ -13,7 +13,6 @@
 namespace armada {
 namespace {
 
-constexpr double kCriterion_mm = 20.0;
 constexpr double kLargestShown_mm = 1e5;
 constexpr double kSmallestShown_mm = 1e-3;
 constexpr double kShortestBucket_s = 0.1;

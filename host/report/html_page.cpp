@@ -10,8 +10,6 @@
 namespace armada {
 namespace {
 
-constexpr double kCriterion_mm = 20.0;
-
 /// A value of metrics.json as a reader wants it.
 std::string ValueText(const Json& value) {
   if (value.is_null()) return "–";

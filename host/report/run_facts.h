@@ -8,6 +8,9 @@
 
 namespace armada {
 
+/// What metrics.json counts as tracking, unless the scenario says otherwise (`criterion.error_max_m`).
+inline constexpr double kCriterion_mm = 20.0;
+
 /// The part of a run in which something still happens: until the last arm has settled, with a little after
 /// it; the whole run where an arm never settles.
 AxisRange TransientSpan(const RecordedRun& run);

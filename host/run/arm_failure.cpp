@@ -1,9 +1,9 @@
 #include "host/run/arm_failure.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "firmware/core/cause.h"
+#include "host/number_format.h"
 #include "host/run/board_lateness.h"
 
 namespace armada {
@@ -12,12 +12,6 @@ namespace {
 constexpr double kTelling_s = 0.1;  // a tick that was late tells of it later
 
 using Json = RunEvidence::Json;
-
-std::string Number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 // The last tick at which the arm went to a state in which it does not follow; null: it never did.
 const telemetry_t* StopOf(std::span<const telemetry_t> ticks) {
@@ -62,9 +56,9 @@ class Words {
 std::string ErrorText(const ArmMetrics& arm, const ScenarioConfig& scenario) {
   const bool leaderless = scenario.leader.kind == LeaderKind::kNone;
   std::string text =
-      "was " + Number("%.1f mm from ", arm.max_m * 1e3) + (leaderless ? "the agreed point" : "the leader");
+      "was " + NumberAs("%.1f mm from ", arm.max_m * 1e3) + (leaderless ? "the agreed point" : "the leader");
   if (arm.max_at_s) text += " at " + TimeText(*arm.max_at_s);
-  text += Number(" (criterion.error_max_m is %g mm)", scenario.criterion.error_max_m * 1e3);
+  text += NumberAs(" (criterion.error_max_m is %g mm)", scenario.criterion.error_max_m * 1e3);
   return text;
 }
 
@@ -76,7 +70,7 @@ void AddMisses(const RunEvidence& evidence, const ArmMetrics& arm, Words* words)
     if (miss.kind == MissKind::kDiverged) words->Add("diverged", arm.beyond_at_s, "diverged");
     if (miss.kind == MissKind::kMoved) {
       words->Add("moved", std::nullopt,
-                 "was to stand still and moved at " + Number("%.2f rad/s", arm.joint_speed_max_rad_s));
+                 "was to stand still and moved at " + NumberAs("%.2f rad/s", arm.joint_speed_max_rad_s));
     }
   }
 }

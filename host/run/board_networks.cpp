@@ -22,7 +22,7 @@ std::string BoardName(int arm_id) {
   return "board" + std::to_string(arm_id);
 }
 
-std::string Address(int host) {
+std::string AddressOf(int host) {
   return kSubnet + std::to_string(host) + "/24";
 }
 
@@ -55,7 +55,7 @@ bool BoardNetworks::Enter(std::string* error) {
   }
   return RunAll({{"link", "set", "dev", "lo", "up"},
                  {"link", "add", "dev", kBridge, "type", "bridge", "mcast_snooping", "0"},
-                 {"address", "add", Address(254), "dev", kBridge},
+                 {"address", "add", AddressOf(254), "dev", kBridge},
                  {"link", "set", "dev", kBridge, "up"},
                  {"route", "add", kMulticast, "dev", kBridge}},
                 error);
@@ -69,7 +69,7 @@ bool BoardNetworks::Add(int arm_id, const std::string& can_interface, std::strin
        {"link", "add", "dev", port, "type", "veth", "peer", "name", "lan", "netns", board},
        {"link", "set", "dev", port, "master", kBridge, "up"},
        {"-n", board, "link", "set", "dev", "lo", "up"},
-       {"-n", board, "address", "add", Address(++boards_), "dev", "lan"},
+       {"-n", board, "address", "add", AddressOf(++boards_), "dev", "lan"},
        {"-n", board, "link", "set", "dev", "lan", "up"},
        {"-n", board, "route", "add", kMulticast, "dev", "lan"},
        {"link", "add", "dev", can_interface, "type", "vxcan", "peer", "name", can_interface, "netns", board},

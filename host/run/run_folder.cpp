@@ -127,4 +127,18 @@ void RunFolder::KeepAcrossExec() {
   SetInherited(fileno(janitor_), true);
 }
 
+void EmptyRunFolder(const std::string& directory) {
+  const fs::path folder = directory;
+  std::error_code ignored;
+  for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "leader.csv", "lcm.log",
+                           "report", "without_subtask", "fleet.key", "state"}) {
+    fs::remove_all(folder / name, ignored);
+  }
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("arm_") || name.starts_with("can_") || name.starts_with("initial_"))
+      fs::remove(entry.path(), ignored);
+  }
+}
+
 }  // namespace armada

@@ -32,4 +32,8 @@ class RunFolder {
   FILE* janitor_;
 };
 
+/// Removes what an earlier run has left in a folder that was taken: it must not pass for a result of the next
+/// one.
+void EmptyRunFolder(const std::string& directory);
+
 }  // namespace armada

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "hil/same_instant.h"
+
 namespace armada {
 namespace {
 
 // Instants closer together than this are one.
-constexpr double kSameInstant_s = 1e-9;
 
 }  // namespace
 

@@ -1,10 +1,11 @@
 #include "host/sim/virtual_operator.h"
 
+#include "hil/same_instant.h"
+
 namespace armada {
 namespace {
 
 // Times closer together than this are one.
-constexpr double kSameInstant_s = 1e-9;
 
 }  // namespace
 

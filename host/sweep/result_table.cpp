@@ -16,8 +16,6 @@
 namespace armada {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 std::optional<double> OrNone(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
@@ -66,14 +64,14 @@ void ResultTable::Set(size_t row, const SeedResult& result) {
   put(std::bit_cast<double>(result.seed));
   put(result.ok ? 1.0 : 0.0);
   put(result.fleet_rms_mm);
-  put(result.floor_rms_mm.value_or(kNone));
+  put(result.floor_rms_mm.value_or(kNoFigure));
   for (const SeedResult::Arm& arm : result.arms) {
     put(arm.diverged ? 1.0 : 0.0);
-    put(arm.settled_s.value_or(kNone));
+    put(arm.settled_s.value_or(kNoFigure));
     put(arm.rms_mm);
     put(arm.max_mm);
     put(arm.estimator_x_m);
-    put(arm.floor_rms_mm.value_or(kNone));
+    put(arm.floor_rms_mm.value_or(kNoFigure));
   }
 }
 

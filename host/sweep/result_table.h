@@ -1,11 +1,15 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "host/sweep/seed_result.h"
 
 namespace armada {
+
+/// In place of a figure that there is not.
+inline constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 /// Results of a sweep, a row a seed. They lie in a temporary file without a name, mapped into memory: the
 /// kernel keeps of it what there is room for, and a sweep of any number of seeds needs no more of the heap

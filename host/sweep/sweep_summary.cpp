@@ -7,15 +7,13 @@
 namespace armada {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// The arm with the largest figure, and that figure; kNone where an arm has none.
+// The arm with the largest figure, and that figure; kNoFigure where an arm has none.
 template <class FigureOf>
 WorstSeed WorstArm(const ResultTable& results, size_t row, const FigureOf& figure_of) {
   WorstSeed worst{results.seed(row), 0, 0.0};
   for (size_t i = 0; i < results.arm_ids().size(); ++i) {
     const double figure = figure_of(i);
-    if (std::isnan(figure)) return {worst.seed, 0, kNone};
+    if (std::isnan(figure)) return {worst.seed, 0, kNoFigure};
     if (figure >= worst.value) worst = {worst.seed, results.arm_ids()[i], figure};
   }
   return worst;
@@ -31,7 +29,7 @@ bool AnyDiverged(const ResultTable& results, size_t row) {
 // Unless an arm diverged, whose figures would hide all others.
 WorstSeed WorstMax(const ResultTable& results, size_t row) {
   return WorstArm(results, row, [&](size_t arm) {
-    return results.diverged(arm)[row] != 0.0 ? kNone : results.max_mm(arm)[row];
+    return results.diverged(arm)[row] != 0.0 ? kNoFigure : results.max_mm(arm)[row];
   });
 }
 
@@ -47,7 +45,7 @@ SweepArmSummary SummarizeArm(const ResultTable& results, size_t arm) {
     return DistributionOf(
         results.rows(),
         [&results, arm, figures](size_t row) {
-          return results.diverged(arm)[row] != 0.0 ? kNone : figures[row];
+          return results.diverged(arm)[row] != 0.0 ? kNoFigure : figures[row];
         },
         seed_of);
   };
@@ -57,7 +55,7 @@ SweepArmSummary SummarizeArm(const ResultTable& results, size_t arm) {
   summary.over_floor = DistributionOf(
       results.rows(),
       [&](size_t row) {
-        return results.diverged(arm)[row] != 0.0 ? kNone
+        return results.diverged(arm)[row] != 0.0 ? kNoFigure
                                                  : results.rms_mm(arm)[row] / results.floor_rms_mm(arm)[row];
       },
       seed_of);
@@ -117,7 +115,7 @@ SweepSummary Summarize(const ResultTable& results) {
   summary.fleet_over_floor = DistributionOf(
       rows,
       [&](size_t row) {
-        return AnyDiverged(results, row) ? kNone
+        return AnyDiverged(results, row) ? kNoFigure
                                          : results.fleet_rms_mm()[row] / results.fleet_floor_rms_mm()[row];
       },
       seed_of);

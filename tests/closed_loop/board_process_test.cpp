@@ -19,7 +19,7 @@ BoardProcess Process(const FaultConfig& fault) {
 }
 
 /// A tick whose samples are there at once.
-Turn Tick(BoardProcess& process, int64_t k) {
+Turn TurnAt(BoardProcess& process, int64_t k) {
   const Turn turn = process.Begin(k);
   process.Answers(0.01 * static_cast<double>(k), true);
   return turn;
@@ -80,15 +80,15 @@ TEST(BoardProcess, WaitsForLateSamplesAsLongAsItMay) {
 
 TEST(BoardProcess, ThatIsStoppedMissesItsTicks) {
   BoardProcess process = Process(FaultAtOne(FaultKind::kControllerStops));
-  EXPECT_EQ(Tick(process, 99), Turn::kTick);
+  EXPECT_EQ(TurnAt(process, 99), Turn::kTick);
   for (int64_t k = 100; k < 300; ++k) {
     EXPECT_FALSE(process.IsOnTime(k));
-    EXPECT_EQ(Tick(process, k), Turn::kMissed);
+    EXPECT_EQ(TurnAt(process, k), Turn::kMissed);
   }
   EXPECT_EQ(process.tick(), 99);
-  EXPECT_EQ(Tick(process, 300), Turn::kTick);
+  EXPECT_EQ(TurnAt(process, 300), Turn::kTick);
   EXPECT_EQ(process.missed_ticks(), 200);
-  EXPECT_EQ(Tick(process, 301), Turn::kTick);
+  EXPECT_EQ(TurnAt(process, 301), Turn::kTick);
   EXPECT_EQ(process.missed_ticks(), 0);
 }
 
@@ -107,17 +107,17 @@ TEST(BoardProcess, ThatIsSlowMissesTheTicksThatItIsBusyIn) {
 
 TEST(BoardProcess, ThatIsKilledStartsAnew) {
   BoardProcess process = Process(FaultAtOne(FaultKind::kControllerRestarts));
-  EXPECT_EQ(Tick(process, 99), Turn::kTick);
-  EXPECT_EQ(Tick(process, 100), Turn::kNone);
+  EXPECT_EQ(TurnAt(process, 99), Turn::kTick);
+  EXPECT_EQ(TurnAt(process, 100), Turn::kNone);
   EXPECT_FALSE(process.running());
-  EXPECT_EQ(Tick(process, 299), Turn::kNone);
-  EXPECT_EQ(Tick(process, 300), Turn::kStart);
+  EXPECT_EQ(TurnAt(process, 299), Turn::kNone);
+  EXPECT_EQ(TurnAt(process, 300), Turn::kStart);
   EXPECT_TRUE(process.running());
   EXPECT_EQ(process.first_tick(), 305);
-  for (int64_t k = 301; k < 305; ++k) EXPECT_EQ(Tick(process, k), Turn::kStarts);
+  for (int64_t k = 301; k < 305; ++k) EXPECT_EQ(TurnAt(process, k), Turn::kStarts);
   EXPECT_FALSE(process.IsOnTime(304));
   EXPECT_TRUE(process.IsOnTime(305));
-  EXPECT_EQ(Tick(process, 305), Turn::kTick);
+  EXPECT_EQ(TurnAt(process, 305), Turn::kTick);
   EXPECT_EQ(process.starts(), 2u);
 }
 

@@ -9,12 +9,10 @@
 
 #include "tests/core/closed_loop.h"
 #include "tests/core/paper_setting.h"
+#include "tests/support/numbers.h"
 
 namespace armada {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ArmControllerConfig Config(int dof, LawKind law, RandomArms& random) {
   ArmControllerConfig config = PaperController(random.Config(dof, 9.81));

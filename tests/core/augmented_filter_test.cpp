@@ -13,8 +13,6 @@
 namespace armada {
 namespace {
 
-constexpr double kH_s = 0.01;
-
 SensorConfig Sensor(int dof, double position_rad = 1e-5, double velocity_rad_s = 1e-3) {
   return {JointVector::Constant(dof, position_rad), JointVector::Constant(dof, velocity_rad_s)};
 }
@@ -39,7 +37,7 @@ class Bench {
   JointVector Advance(const JointVector& d_Nm) {
     const JointVector tau_Nm =
         random_.Numbers(plant_.dof(), 100.0) - 5.0 * FromPlant(plant_, plant_.dq_rad_s);
-    for (int i = 0; i < 10; ++i) plant_.Step(ToPlant(tau_Nm - d_Nm), kH_s / 10);
+    for (int i = 0; i < 10; ++i) plant_.Step(ToPlant(tau_Nm - d_Nm), kPeriod_s / 10);
     return tau_Nm;
   }
   JointVector Advance() { return Advance(JointVector::Zero(plant_.dof())); }
@@ -63,7 +61,7 @@ TEST(AugmentedFilter, KnowsTheJointsFromTheModelWhereSamplesAreWorthNothing) {
       const JointVector tau_Nm = bench.Advance();
       JointState useless = bench.state();
       useless.dq_rad_s.array() += 10.0;
-      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, useless, kH_s, theta_hat);
+      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, useless, kPeriod_s, theta_hat);
     }
     EXPECT_LT((filter.joints().q_rad - bench.state().q_rad).norm(), 1e-3) << arm.dof();
     EXPECT_EQ(theta_hat, arm.Theta());
@@ -83,7 +81,7 @@ TEST(AugmentedFilter, PredictsAcrossTheChangeOfTorque) {
   const JointVector after_Nm = random.Numbers(3, 200.0);
   for (int i = 0; i < 10; ++i) plant.Step(ToPlant(i < 3 ? before_Nm : after_Nm), 0.001);
   ParameterVector theta_hat = arm.Theta();
-  filter.Update(arm, {before_Nm, 0.003, after_Nm}, StateOf(plant), kH_s, theta_hat);
+  filter.Update(arm, {before_Nm, 0.003, after_Nm}, StateOf(plant), kPeriod_s, theta_hat);
   EXPECT_LT((filter.joints().dq_rad_s - StateOf(plant).dq_rad_s).norm(), 1e-7);
 }
 
@@ -114,31 +112,31 @@ TEST(AugmentedFilter, IsTheExtendedKalmanFilter) {
       const JointVector tau_Nm = bench.Advance(random.Numbers(n, 10.0));
       const JointState sample = bench.state();
       const JointState predicted =
-          Integrate(arm, theta_hat, {x.head(n), x.segment(n, n)}, tau_Nm - JointVector(x.tail(n)), kH_s);
+          Integrate(arm, theta_hat, {x.head(n), x.segment(n, n)}, tau_Nm - JointVector(x.tail(n)), kPeriod_s);
       const JointVector dq_mid = 0.5 * (x.segment(n, n) + predicted.dq_rad_s);
       const PlanarArm::Posture at = arm.At(0.5 * (x.head(n) + predicted.q_rad));
       const auto Y_at = [&](const JointVector& dq_end) {
-        return Eigen::MatrixXd(arm.Regressor(at, dq_mid, dq_mid, (dq_end - x.segment(n, n)) / kH_s));
+        return Eigen::MatrixXd(arm.Regressor(at, dq_mid, dq_mid, (dq_end - x.segment(n, n)) / kPeriod_s));
       };
       const Eigen::MatrixXd Y = Y_at(predicted.dq_rad_s);
       const Eigen::MatrixXd H_inverse = Eigen::MatrixXd(arm.Inertia(at, theta_hat)).inverse();
       Eigen::MatrixXd L(2 * n, n);
-      L << 0.5 * kH_s * Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Identity(n, n);
+      L << 0.5 * kPeriod_s * Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Identity(n, n);
       Eigen::MatrixXd YI(n, p + n);
       YI << Y, Eigen::MatrixXd::Identity(n, n);
-      const Eigen::MatrixXd B = -kH_s * H_inverse * YI;
+      const Eigen::MatrixXd B = -kPeriod_s * H_inverse * YI;
       Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size, size);
-      A.block(0, n, n, n) = kH_s * Eigen::MatrixXd::Identity(n, n);
+      A.block(0, n, n, n) = kPeriod_s * Eigen::MatrixXd::Identity(n, n);
       A.block(0, 2 * n, 2 * n, p + n) = L * B;
       const Eigen::MatrixXd P_b = P.bottomRightCorner(p + n, p + n);
-      const Eigen::MatrixXd unforeseen = kH_s * H_inverse * (Y_at(sample.dq_rad_s) - Y);
+      const Eigen::MatrixXd unforeseen = kPeriod_s * H_inverse * (Y_at(sample.dq_rad_s) - Y);
       const Eigen::MatrixXd noise =
-          kH_s * kH_s * model.fast_deviation_Nm * model.fast_deviation_Nm * H_inverse * H_inverse +
+          kPeriod_s * kPeriod_s * model.fast_deviation_Nm * model.fast_deviation_Nm * H_inverse * H_inverse +
           unforeseen * P.block(2 * n, 2 * n, p, p) * unforeseen.transpose();
       Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(size, size);
       Q.topLeftCorner(2 * n, 2 * n) = L * noise * L.transpose();
-      Q.topLeftCorner(n, n) +=
-          model.roughness * model.roughness / 12.0 * kH_s * kH_s * (noise + B * P_b * B.transpose());
+      Q.topLeftCorner(n, n) += model.roughness * model.roughness / 12.0 * kPeriod_s * kPeriod_s *
+                               (noise + B * P_b * B.transpose());
       Q.diagonal().segment(2 * n, p).setConstant(kThetaDrift);
       Q.diagonal().tail(n).setConstant(model.drift_Nm * model.drift_Nm);
       P = A * P * A.transpose() + Q;
@@ -155,7 +153,7 @@ TEST(AugmentedFilter, IsTheExtendedKalmanFilter) {
       x += K * y;
       P = (Eigen::MatrixXd::Identity(size, size) - K * C) * P;
 
-      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, sample, kH_s, theta_hat);
+      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, sample, kPeriod_s, theta_hat);
       ASSERT_LT((filter.joints().q_rad - x.head(n)).norm(), 1e-7);
       ASSERT_LT((filter.joints().dq_rad_s - x.segment(n, n)).norm(), 1e-6);
       ASSERT_LT((theta_hat - x.segment(2 * n, p)).norm(), 1e-6 * (1.0 + theta_hat.norm()));
@@ -180,7 +178,7 @@ TEST(AugmentedFilter, FindsTheParametersOfThePapersArms) {
       Project({}, arm, theta_hat);
       for (int k = 0; k < 1000; ++k) {
         const JointVector tau_Nm = bench.Advance();
-        filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kH_s, theta_hat);
+        filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kPeriod_s, theta_hat);
         Project({}, arm, theta_hat);
       }
       EXPECT_LT((theta_hat - arm.Theta()).norm(), 0.01 * arm.Theta().norm())
@@ -204,7 +202,7 @@ TEST(AugmentedFilter, IsNotSureOfWrongParameters) {
     Project({}, arm, theta_hat);
     for (int k = 0; k < 200; ++k) {
       const JointVector tau_Nm = bench.Advance(random.Numbers(2, 40.0));
-      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kH_s, theta_hat);
+      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kPeriod_s, theta_hat);
       Project({}, arm, theta_hat);
     }
     const Eigen::Vector3d error = theta_hat - arm.Theta();
@@ -223,7 +221,7 @@ TEST(AugmentedFilter, CovarianceStaysSymmetricAndPositiveDefinite) {
     Project({}, arm, theta_hat);
     for (int k = 0; k < 200; ++k) {
       const JointVector tau_Nm = bench.Advance();
-      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kH_s, theta_hat);
+      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kPeriod_s, theta_hat);
       Project({}, arm, theta_hat);
       const ParameterMatrix P = filter.P_theta();
       ASSERT_EQ((P - P.transpose()).cwiseAbs().maxCoeff(), 0.0);
@@ -243,9 +241,9 @@ class DisturbanceTest : public testing::Test {
     AugmentedFilter filter(Sensor(3), model, {.drift_variance = 0.0}, Covariance(arm, 0.0), arm);
     filter.Start(bench.state());
     ParameterVector theta_hat = arm.Theta();
-    for (int k = 0; k < std::lround(seconds / kH_s); ++k) {
+    for (int k = 0; k < std::lround(seconds / kPeriod_s); ++k) {
       const JointVector tau_Nm = bench.Advance(d_Nm);
-      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kH_s, theta_hat);
+      filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, bench.state(), kPeriod_s, theta_hat);
     }
     return filter.d_hat_Nm();
   }
@@ -283,9 +281,9 @@ TEST(AugmentedFilter, FindsTheSpeedFromQuantisedPositions) {
     const JointVector tau_Nm = bench.Advance(random.Numbers(2, 40.0));
     JointState sample{bench.state().q_rad, JointVector::Zero(2)};
     for (double& q : sample.q_rad) q = std::round(q / step_rad) * step_rad;
-    filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, sample, kH_s, theta_hat);
+    filter.Update(arm, {tau_Nm, 0.0, tau_Nm}, sample, kPeriod_s, theta_hat);
     filtered += (filter.joints().dq_rad_s - bench.state().dq_rad_s).squaredNorm();
-    differenced += ((sample.q_rad - previous) / kH_s - bench.state().dq_rad_s).squaredNorm();
+    differenced += ((sample.q_rad - previous) / kPeriod_s - bench.state().dq_rad_s).squaredNorm();
     previous = sample.q_rad;
   }
   EXPECT_LT(std::sqrt(filtered / 1000.0), 0.02);

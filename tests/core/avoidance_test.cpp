@@ -12,8 +12,6 @@
 namespace armada {
 namespace {
 
-constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
-
 ObstacleConfig RandomObstacle(RandomArms& random) {
   ObstacleConfig obstacle;
   obstacle.kind = random.In(0.0, 1.0) < 0.5 ? ObstacleKind::kDisc : ObstacleKind::kHalfPlane;
@@ -86,7 +84,7 @@ TEST(LimitMargin, IsThatOfTheJointNearestToALimit) {
 }
 
 /// An arm at a state, and what avoidance makes of a wanted velocity.
-struct Instant {
+struct Encounter {
   PlanarArm arm;
   JointVector q, dq_main, wanted;
   JointMatrix N;
@@ -130,7 +128,7 @@ struct Instant {
   }
 };
 
-Instant RandomInstant(RandomArms& random, int dof, int obstacles, bool limits) {
+Encounter RandomEncounter(RandomArms& random, int dof, int obstacles, bool limits) {
   PlanarArmConfig config = random.Config(dof);
   const JointVector q = random.Numbers(dof, 4.0);
   if (limits) config.q_min_rad = q - JointVector::Constant(dof, 0.1) - 0.1 * random.Numbers(dof, 1.0);
@@ -146,7 +144,7 @@ Instant RandomInstant(RandomArms& random, int dof, int obstacles, bool limits) {
 TEST(Avoid, ChangesNothingWhereNothingIsNear) {
   RandomArms random(2);
   for (int trial = 0; trial < 50; ++trial) {
-    Instant instant = RandomInstant(random, 3 + trial % 5, 0, false);
+    Encounter instant = RandomEncounter(random, 3 + trial % 5, 0, false);
     PlanarArmConfig config = instant.arm.config();
     config.obstacle_count = 1;
     config.obstacles[0] = {ObstacleKind::kDisc, 100.0, 100.0, 1.0, 0.0};
@@ -161,7 +159,7 @@ TEST(Avoid, IsTheNearestVelocityThatKeepsTheBarriers) {
   RandomArms random(3);
   int active = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    Instant instant = RandomInstant(random, 3, 3, true);
+    Encounter instant = RandomEncounter(random, 3, 3, true);
     if (DampedPseudoinverse({}, instant.arm.Jacobian(instant.arm.At(instant.q))).sigma_min < 0.2) continue;
     instant.config.phi_max_rad_s = 1e3;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(instant.N));
@@ -192,7 +190,7 @@ TEST(Avoid, LetsNoDistanceShrinkFasterThanAllowed) {
   RandomArms random(4);
   int active = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    Instant instant = RandomInstant(random, 5 + trial % 3, 1, true);
+    Encounter instant = RandomEncounter(random, 5 + trial % 3, 1, true);
     if (DampedPseudoinverse({}, instant.arm.Jacobian(instant.arm.At(instant.q))).sigma_min < 0.2) continue;
     instant.dq_main *= 0.1;
     instant.config.phi_max_rad_s = 1e3;
@@ -212,7 +210,7 @@ TEST(Avoid, LetsNoDistanceShrinkFasterThanAllowed) {
 TEST(Avoid, IsBounded) {
   RandomArms random(5);
   for (int trial = 0; trial < 300; ++trial) {
-    const Instant instant = RandomInstant(random, 3 + trial % 5, kMaxObstacles, true);
+    const Encounter instant = RandomEncounter(random, 3 + trial % 5, kMaxObstacles, true);
     const JointVector phi = instant.Phi();
     EXPECT_TRUE(phi.allFinite());
     EXPECT_LE(phi.cwiseAbs().maxCoeff(), instant.config.phi_max_rad_s * (1.0 + 1e-12));

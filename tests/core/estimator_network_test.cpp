@@ -4,21 +4,13 @@
 #include <cmath>
 
 #include "tests/core/estimator_network.h"
+#include "tests/core/estimators.h"
 #include "tests/core/paper_setting.h"
 #include "tests/support/graphs.h"
 #include "tests/support/random_arms.h"
 
 namespace armada {
 namespace {
-
-constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit,
-                                       EstimatorKind::kPredictive};
-
-EstimatorConfig Config(EstimatorKind kind) {
-  EstimatorConfig config;
-  config.kind = kind;
-  return config;
-}
 
 std::vector<Zeta> RandomStart(uint64_t seed, size_t count) {
   RandomArms random(seed);
@@ -44,7 +36,7 @@ struct Setting {
 // Tracks the paper's leader from random states; errors over t = 8 .. 12 s, two of its laps.
 Rms MeasureRms(const Setting& setting, const Digraph& graph = PaperGraph()) {
   const double h_s = setting.h_s;
-  EstimatorNetwork network(Config(setting.kind), graph,
+  EstimatorNetwork network(ConfigOf(setting.kind), graph,
                            RandomStart(7, static_cast<size_t>(graph.node_count())));
   Rms sum{};
   int count = 0;
@@ -141,8 +133,8 @@ class EstimatorNetworkFromAStart : public testing::TestWithParam<uint64_t> {};
 TEST_P(EstimatorNetworkFromAStart, NoComponentLeavesItsBandAfterTheTheoremsTime) {
   constexpr double kH_s = 1e-4;
   constexpr double kPassingDown_s = 5.0 * kH_s;
-  for (const EstimatorKind kind : kAllKinds) {
-    const EstimatorConfig config = Config(kind);
+  for (const EstimatorKind kind : kEstimatorKinds) {
+    const EstimatorConfig config = ConfigOf(kind);
     EstimatorNetwork network(config, PaperGraph(), RandomStart(GetParam(), 7));
     const Zeta start = PaperLeader(0.0);
     const double t_f1 =
@@ -173,7 +165,7 @@ TEST_P(EstimatorNetworkFromAStart, NoComponentLeavesItsBandAfterTheTheoremsTime)
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorNetworkFromAStart, testing::Values(1, 2, 3));
 
 TEST(EstimatorNetwork, NobodyIsSyncedBeforeEverybodyUpstreamAgrees) {
-  EstimatorNetwork network(Config(EstimatorKind::kPredictive), PaperGraph(), RandomStart(4, 7));
+  EstimatorNetwork network(ConfigOf(EstimatorKind::kPredictive), PaperGraph(), RandomStart(4, 7));
   bool listener_synced = false;
   for (int k = 0; k < 600 && !listener_synced; ++k) {
     const int before = network.nodes()[4].agreement();
@@ -198,8 +190,8 @@ TEST(EstimatorNetwork, SyncsThroughCycles) {
       if (i != j) graph.SetWeight(i, j, 1.0);
     }
   }
-  for (const EstimatorKind kind : kAllKinds) {
-    EstimatorNetwork network(Config(kind), graph, RandomStart(5, 4));
+  for (const EstimatorKind kind : kEstimatorKinds) {
+    EstimatorNetwork network(ConfigOf(kind), graph, RandomStart(5, 4));
     for (int k = 0; k < 1500; ++k) network.Tick(PaperLeader(k * 0.01), 0.01);
     for (const Estimator& node : network.nodes()) EXPECT_TRUE(node.synced());
   }
@@ -217,7 +209,7 @@ Digraph Ring(int count, bool both_ways) {
 TEST(EstimatorNetwork, LeaderlessArmsAgreeOnAPointBetweenThem) {  // Corollary 2
   for (const EstimatorKind kind : {EstimatorKind::kImplicit, EstimatorKind::kPredictive}) {
     for (const bool both_ways : {true, false}) {
-      EstimatorConfig config = Config(kind);
+      EstimatorConfig config = ConfigOf(kind);
       config.leaderless = true;
       std::vector<Zeta> start = RandomStart(6, 7);
       for (Zeta& zeta : start) zeta.x_m.array() += 20.0;  // the origin is not between them
@@ -243,7 +235,7 @@ TEST(EstimatorNetwork, LeaderlessArmsAgreeOnAPointBetweenThem) {  // Corollary 2
 }
 
 TEST(EstimatorNetwork, LeaderlessPaperKindAgreesUpToItsChatter) {
-  EstimatorConfig config = Config(EstimatorKind::kPaper);
+  EstimatorConfig config = ConfigOf(EstimatorKind::kPaper);
   config.leaderless = true;
   EstimatorNetwork network(config, Ring(7, true), RandomStart(6, 7));
   for (int k = 0; k < 3000; ++k) network.Tick(Zeta::Zero(2), 0.01);
@@ -259,7 +251,7 @@ TEST(EstimatorNetwork, SwitchingTopologiesThatEachReachAllKeepTheLeader) {  // C
   for (int i = 0; i < 6; ++i) chain.SetWeight(i, i + 1, 2.0);
   ASSERT_TRUE(chain.LeaderReachesAll());
 
-  EstimatorNetwork network(Config(EstimatorKind::kPredictive), PaperGraph(), RandomStart(8, 7));
+  EstimatorNetwork network(ConfigOf(EstimatorKind::kPredictive), PaperGraph(), RandomStart(8, 7));
   for (int k = 0; k < 1500; ++k) {
     if (k % 50 == 0) network.Switch(k % 100 == 0 ? PaperGraph() : chain);
     network.Tick(PaperLeader(k * 0.01), 0.01);

@@ -3,20 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/estimators.h"
+#include "tests/core/paper_setting.h"
 #include "tests/support/random_arms.h"
 
 namespace armada {
 namespace {
-
-constexpr double kH_s = 0.01;
-constexpr EstimatorKind kAllKinds[] = {EstimatorKind::kPaper, EstimatorKind::kImplicit,
-                                       EstimatorKind::kPredictive};
-
-EstimatorConfig Config(EstimatorKind kind) {
-  EstimatorConfig config;
-  config.kind = kind;
-  return config;
-}
 
 Zeta RandomZeta(RandomArms& random, double range = 5.0) {
   return {random.Numbers<TaskVector>(2, range), random.Numbers<TaskVector>(2, range),
@@ -53,7 +45,7 @@ void ExpectEqual(const Zeta& a, const Zeta& b, double tolerance) {
 // (1.9) computed as printed, with the sum of weighted differences inside sgn.
 TEST(Estimator, PaperKindIsExplicitEulerOf1_9) {
   RandomArms random(1);
-  const EstimatorConfig config = Config(EstimatorKind::kPaper);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kPaper);
   for (int step = 0; step < 500; ++step) {
     const Zeta own = RandomZeta(random);
     Neighbours neighbours;
@@ -70,24 +62,24 @@ TEST(Estimator, PaperKindIsExplicitEulerOf1_9) {
           const Neighbour& n = neighbours.list[static_cast<size_t>(j)];
           sum += n.weight * ((own.*block)[c] - (n.zeta.*block)[c]);
         }
-        (expected.*block)[c] -= kH_s * beta * Sgn(sum);
+        (expected.*block)[c] -= kPeriod_s * beta * Sgn(sum);
       }
     };
     euler(&Zeta::x_m, config.beta_1_m_s);
     euler(&Zeta::v_m_s, config.beta_2_m_s2);
     euler(&Zeta::a_m_s2, config.beta_3_m_s3);
     Estimator estimator(config, own);
-    estimator.Update(neighbours, kH_s);
+    estimator.Update(neighbours, kPeriod_s);
     ExpectEqual(estimator.zeta(), expected, 0.0);
   }
 }
 
 TEST(Estimator, PaperKindChattersAroundAConstantLeader) {
-  Estimator estimator(Config(EstimatorKind::kPaper), ZetaOf(1.0 + 0.3 * 4.0 * kH_s));
+  Estimator estimator(ConfigOf(EstimatorKind::kPaper), ZetaOf(1.0 + 0.3 * 4.0 * kPeriod_s));
   const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
   for (int k = 0; k < 10; ++k) {
     const double side = estimator.zeta().x_m[0] - 1.0;
-    estimator.Update(neighbours, kH_s);
+    estimator.Update(neighbours, kPeriod_s);
     EXPECT_LT(side * (estimator.zeta().x_m[0] - 1.0), 0.0);
     EXPECT_TRUE(estimator.in_band());
   }
@@ -95,10 +87,10 @@ TEST(Estimator, PaperKindChattersAroundAConstantLeader) {
 
 TEST(Estimator, ImplicitKindRestsExactlyOnAConstantLeader) {
   const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
-  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.5));
-  for (int k = 0; k < 20; ++k) estimator.Update(neighbours, kH_s);
+  Estimator estimator(ConfigOf(EstimatorKind::kImplicit), ZetaOf(1.5));
+  for (int k = 0; k < 20; ++k) estimator.Update(neighbours, kPeriod_s);
   for (int k = 0; k < 100; ++k) {
-    estimator.Update(neighbours, kH_s);
+    estimator.Update(neighbours, kPeriod_s);
     EXPECT_EQ(estimator.zeta().x_m[0], 1.0);
     EXPECT_EQ(estimator.zeta().v_m_s[1], 0.0);
   }
@@ -110,10 +102,10 @@ TEST(Estimator, ImplicitStepSolvesItsInclusion) {
   for (int trial = 0; trial < 500; ++trial) {
     const Zeta own = RandomZeta(random, 0.5);
     const Zeta other = RandomZeta(random, 0.5);
-    Estimator estimator(Config(EstimatorKind::kImplicit), own);
-    estimator.Update(Hearing({Leader(other)}), kH_s);
+    Estimator estimator(ConfigOf(EstimatorKind::kImplicit), own);
+    estimator.Update(Hearing({Leader(other)}), kPeriod_s);
     for (int c = 0; c < 2; ++c) {
-      const double moved = (estimator.zeta().a_m_s2[c] - own.a_m_s2[c]) / (kH_s * 21.0);
+      const double moved = (estimator.zeta().a_m_s2[c] - own.a_m_s2[c]) / (kPeriod_s * 21.0);
       const double rest = estimator.zeta().a_m_s2[c] - other.a_m_s2[c];
       if (std::abs(rest) > 1e-12) {
         EXPECT_NEAR(moved, -Sgn(rest), 1e-9);
@@ -125,13 +117,13 @@ TEST(Estimator, ImplicitStepSolvesItsInclusion) {
 }
 
 TEST(Estimator, DisagreementShrinksByHBetaEveryTick) {
-  const EstimatorConfig config = Config(EstimatorKind::kImplicit);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kImplicit);
   Estimator estimator(config, ZetaOf(2.0));
   const Neighbours neighbours = Hearing({Leader(ZetaOf(1.0))});
   double distance = 1.0;
   for (int k = 0; k < 30; ++k) {
-    estimator.Update(neighbours, kH_s);
-    distance = std::max(0.0, distance - kH_s * config.beta_1_m_s);
+    estimator.Update(neighbours, kPeriod_s);
+    distance = std::max(0.0, distance - kPeriod_s * config.beta_1_m_s);
     EXPECT_NEAR(estimator.zeta().x_m[0] - 1.0, distance, 1e-12);
   }
   EXPECT_EQ(distance, 0.0);
@@ -140,22 +132,22 @@ TEST(Estimator, DisagreementShrinksByHBetaEveryTick) {
 TEST(Estimator, PredictiveKindFollowsConstantAccelerationExactly) {
   Zeta leader{TaskVector{{1.0, -2.0}}, TaskVector{{0.5, 1.0}}, TaskVector{{-2.0, 3.0}}};
   const double age_s = 0.004;
-  Estimator estimator(Config(EstimatorKind::kPredictive), Taylor(leader, age_s));
+  Estimator estimator(ConfigOf(EstimatorKind::kPredictive), Taylor(leader, age_s));
   for (int k = 0; k < 100; ++k) {
     Neighbour heard = Leader(leader);
     heard.age_s = age_s;  // what was sent is older than the tick
-    estimator.Update(Hearing({heard}), kH_s);
-    leader = Taylor(leader, kH_s);
+    estimator.Update(Hearing({heard}), kPeriod_s);
+    leader = Taylor(leader, kPeriod_s);
     ExpectEqual(estimator.zeta(), Taylor(leader, age_s), 1e-12);
     EXPECT_TRUE(estimator.in_band());
   }
 }
 
 TEST(Estimator, MeanIsWeighted) {
-  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.2));
+  Estimator estimator(ConfigOf(EstimatorKind::kImplicit), ZetaOf(1.2));
   Neighbour far = Leader(ZetaOf(1.23));
   far.weight = 3.0;
-  estimator.Update(Hearing({Leader(ZetaOf(1.19)), far}), kH_s);
+  estimator.Update(Hearing({Leader(ZetaOf(1.19)), far}), kPeriod_s);
   EXPECT_NEAR(estimator.zeta().x_m[0], (1.19 + 3.0 * 1.23) / 4.0, 1e-15);
 }
 
@@ -168,49 +160,50 @@ TEST(Estimator, PredictiveKindUsesTheYoungestNewsOnly) {
   };
   const Neighbours heard =
       Hearing({with_news(1.02, 1.0, 0.020), with_news(1.00, 3.0, 0.021), with_news(9.0, 5.0, 0.03)});
-  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
-  estimator.Update(heard, kH_s);
+  Estimator estimator(ConfigOf(EstimatorKind::kPredictive), ZetaOf(1.0));
+  estimator.Update(heard, kPeriod_s);
   EXPECT_NEAR(estimator.zeta().x_m[0], 1.005, 1e-12) << "the mean of those that are as young as any";
-  EXPECT_NEAR(estimator.leader_age_s(), 0.02 + kH_s, 1e-12);
+  EXPECT_NEAR(estimator.leader_age_s(), 0.02 + kPeriod_s, 1e-12);
 
-  Estimator implicit(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
-  implicit.Update(heard, kH_s);
-  EXPECT_NEAR(implicit.zeta().x_m[0], 1.0 + kH_s * 4.0, 1e-12) << "towards the mean of all, (1.9) as printed";
+  Estimator implicit(ConfigOf(EstimatorKind::kImplicit), ZetaOf(1.0));
+  implicit.Update(heard, kPeriod_s);
+  EXPECT_NEAR(implicit.zeta().x_m[0], 1.0 + kPeriod_s * 4.0, 1e-12)
+      << "towards the mean of all, (1.9) as printed";
 }
 
 TEST(Estimator, PredictiveKindDoesNotGoBackToOlderNewsThanItsOwn) {
-  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
-  estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+  Estimator estimator(ConfigOf(EstimatorKind::kPredictive), ZetaOf(1.0));
+  estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kPeriod_s);
   Neighbour older = Leader(ZetaOf(1.03));
   older.leader_age_s = 0.03;
-  estimator.Update(Hearing({older}), kH_s);
+  estimator.Update(Hearing({older}), kPeriod_s);
   EXPECT_EQ(estimator.zeta().x_m[0], 1.0);
   EXPECT_TRUE(estimator.in_band());
-  EXPECT_NEAR(estimator.leader_age_s(), 2 * kH_s, 1e-12);
+  EXPECT_NEAR(estimator.leader_age_s(), 2 * kPeriod_s, 1e-12);
 }
 
 TEST(Estimator, WhoHasOlderNewsNeedNotAgree) {
-  Estimator estimator(Config(EstimatorKind::kPredictive), ZetaOf(1.0));
+  Estimator estimator(ConfigOf(EstimatorKind::kPredictive), ZetaOf(1.0));
   Neighbour downstream = Leader(ZetaOf(5.0));
   downstream.leader_age_s = 0.05;
   downstream.agreement = 0;
   for (int k = 1; k <= 10; ++k) {
-    estimator.Update(Hearing({Leader(ZetaOf(1.0)), downstream}), kH_s);
+    estimator.Update(Hearing({Leader(ZetaOf(1.0)), downstream}), kPeriod_s);
     EXPECT_EQ(estimator.agreement(), k);
   }
 }
 
 TEST(Estimator, NeighboursWithoutWeightOrNotYetHeardDoNotCount) {
-  for (const EstimatorKind kind : kAllKinds) {
+  for (const EstimatorKind kind : kEstimatorKinds) {
     Neighbour silent = Leader(ZetaOf(9.0));
     silent.heard = false;
     Neighbour unused = Leader(ZetaOf(9.0));
     unused.weight = 0.0;
-    Estimator with(Config(kind), ZetaOf(1.1));
-    Estimator without(Config(kind), ZetaOf(1.1));
+    Estimator with(ConfigOf(kind), ZetaOf(1.1));
+    Estimator without(ConfigOf(kind), ZetaOf(1.1));
     for (int k = 0; k < 5; ++k) {
-      with.Update(Hearing({silent, Leader(ZetaOf(1.0)), unused}), kH_s);
-      without.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+      with.Update(Hearing({silent, Leader(ZetaOf(1.0)), unused}), kPeriod_s);
+      without.Update(Hearing({Leader(ZetaOf(1.0))}), kPeriod_s);
     }
     ExpectEqual(with.zeta(), without.zeta(), 0.0);
   }
@@ -219,10 +212,10 @@ TEST(Estimator, NeighboursWithoutWeightOrNotYetHeardDoNotCount) {
 TEST(Estimator, CoastsWhenNobodyIsHeardAndIsThenInNoBand) {
   RandomArms random(3);
   const Zeta own = RandomZeta(random);
-  for (const EstimatorKind kind : kAllKinds) {
-    Estimator estimator(Config(kind), own);
-    estimator.Update(Neighbours{}, kH_s);
-    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, kH_s) : own, 0.0);
+  for (const EstimatorKind kind : kEstimatorKinds) {
+    Estimator estimator(ConfigOf(kind), own);
+    estimator.Update(Neighbours{}, kPeriod_s);
+    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, kPeriod_s) : own, 0.0);
     EXPECT_FALSE(estimator.in_band());
     EXPECT_EQ(estimator.agreement(), 0);
   }
@@ -231,126 +224,127 @@ TEST(Estimator, CoastsWhenNobodyIsHeardAndIsThenInNoBand) {
 TEST(Estimator, CoastOverMissedTicksIsTheOwnPrediction) {
   RandomArms random(4);
   const Zeta own = RandomZeta(random);
-  for (const EstimatorKind kind : kAllKinds) {
-    Estimator estimator(Config(kind), own);
-    estimator.Update(Neighbours{}, kH_s, 0.03);
-    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, 0.03 + kH_s) : own, 0.0);
+  for (const EstimatorKind kind : kEstimatorKinds) {
+    Estimator estimator(ConfigOf(kind), own);
+    estimator.Update(Neighbours{}, kPeriod_s, 0.03);
+    ExpectEqual(estimator.zeta(), kind == EstimatorKind::kPredictive ? Taylor(own, 0.03 + kPeriod_s) : own,
+                0.0);
   }
 }
 
 TEST(Estimator, PredictiveKindFollowsConstantJerkExactlyWhereTheLeaderTellsIt) {
   const TaskVector jerk_m_s3{{15.0, -9.0}};
   Zeta leader{TaskVector{{1.0, -2.0}}, TaskVector{{0.5, 1.0}}, TaskVector{{-2.0, 3.0}}};
-  Estimator estimator(Config(EstimatorKind::kPredictive), leader);
+  Estimator estimator(ConfigOf(EstimatorKind::kPredictive), leader);
   for (int k = 0; k < 100; ++k) {
     Neighbour heard = Leader(leader);
     heard.jerk_m_s3 = jerk_m_s3;
-    estimator.Update(Hearing({heard}), kH_s);
-    leader = Taylor(leader, jerk_m_s3, kH_s);
+    estimator.Update(Hearing({heard}), kPeriod_s);
+    leader = Taylor(leader, jerk_m_s3, kPeriod_s);
     ExpectEqual(estimator.zeta(), leader, 1e-12);
     EXPECT_EQ(estimator.jerk_m_s3(), jerk_m_s3);
   }
   for (int k = 0; k < 15; ++k) {  // nobody in this topology
-    estimator.Update(Neighbours{}, kH_s);
-    leader = Taylor(leader, jerk_m_s3, kH_s);
+    estimator.Update(Neighbours{}, kPeriod_s);
+    leader = Taylor(leader, jerk_m_s3, kPeriod_s);
     ExpectEqual(estimator.zeta(), leader, 1e-11);
   }
 }
 
 TEST(Estimator, AJerkThatNoLeaderWithinA2HasIsNotFollowed) {
-  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   Estimator estimator(config, ZetaOf(1.0));
   Neighbour wrong = Leader(ZetaOf(1.0));
   wrong.jerk_m_s3 = TaskVector{{1e9, -1e9}};
   for (int k = 0; k < 5; ++k) {
     const Zeta before = estimator.zeta();
-    estimator.Update(Hearing({wrong}), kH_s);
+    estimator.Update(Hearing({wrong}), kPeriod_s);
     EXPECT_EQ(estimator.jerk_m_s3(), (TaskVector{{config.beta_3_m_s3, -config.beta_3_m_s3}}));
     const TaskVector moved = estimator.zeta().a_m_s2 - before.a_m_s2;
-    EXPECT_LE(moved.cwiseAbs().maxCoeff(), 2.0 * kH_s * config.beta_3_m_s3 + 1e-6);
+    EXPECT_LE(moved.cwiseAbs().maxCoeff(), 2.0 * kPeriod_s * config.beta_3_m_s3 + 1e-6);
   }
 }
 
 // Topologies that reach an arm only in turn: what happened in between is corrected at the first contact.
 TEST(Estimator, StaysInItsBandWhileTheNewsAreYoung) {
-  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   Estimator estimator(config, ZetaOf(1.0));
   const Neighbours rest = Hearing({Leader(ZetaOf(1.0))});
-  for (int k = 0; k < 6; ++k) estimator.Update(rest, kH_s);
-  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s)) - 1;
-  for (int k = 0; k < news_ticks; ++k) estimator.Update(Neighbours{}, kH_s);
+  for (int k = 0; k < 6; ++k) estimator.Update(rest, kPeriod_s);
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kPeriod_s)) - 1;
+  for (int k = 0; k < news_ticks; ++k) estimator.Update(Neighbours{}, kPeriod_s);
   EXPECT_TRUE(estimator.in_band());
   EXPECT_EQ(estimator.agreement(), 6) << "what nobody confirms does not count";
 
   Zeta moved = ZetaOf(1.0 + 0.9 * config.beta_1_m_s * config.age_max_s);
   moved.v_m_s.setConstant(-0.9 * config.beta_2_m_s2 * config.age_max_s);
-  estimator.Update(Hearing({Leader(moved)}), kH_s);
+  estimator.Update(Hearing({Leader(moved)}), kPeriod_s);
   EXPECT_TRUE(estimator.in_band());
-  ExpectEqual(estimator.zeta(), Taylor(moved, kH_s), 1e-12);
+  ExpectEqual(estimator.zeta(), Taylor(moved, kPeriod_s), 1e-12);
 
-  for (int k = 0; k < news_ticks + 2; ++k) estimator.Update(Neighbours{}, kH_s);
+  for (int k = 0; k < news_ticks + 2; ++k) estimator.Update(Neighbours{}, kPeriod_s);
   EXPECT_FALSE(estimator.in_band());
   EXPECT_EQ(estimator.agreement(), 0);
-  estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kH_s);
+  estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kPeriod_s);
   EXPECT_FALSE(estimator.in_band()) << "lost: from here on it returns by beta, as at the start";
 }
 
 TEST(Estimator, StandsStillAndWaitsWhenTheLeaderIsLost) {
-  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   Zeta start = ZetaOf(1.0);
   start.v_m_s.setConstant(2.0);
   start.a_m_s2.setConstant(5.0);
   Estimator estimator(config, start);
-  for (int k = 0; k < 6000; ++k) estimator.Update(Neighbours{}, kH_s);
-  const Zeta last = Taylor(start, config.age_max_s + kH_s);
+  for (int k = 0; k < 6000; ++k) estimator.Update(Neighbours{}, kPeriod_s);
+  const Zeta last = Taylor(start, config.age_max_s + kPeriod_s);
   EXPECT_LE((estimator.zeta().x_m - last.x_m).norm(), 0.1);
   EXPECT_TRUE(estimator.zeta().v_m_s.isZero());
   EXPECT_TRUE(estimator.zeta().a_m_s2.isZero());
 
   int ticks = 0;  // until it agrees with a leader at rest at 0 again
-  while (!estimator.synced() && ++ticks < 1000) estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kH_s);
-  EXPECT_LE(ticks * kH_s, last.x_m[0] / config.beta_1_m_s + (config.sync_ticks + 1) * kH_s);
+  while (!estimator.synced() && ++ticks < 1000) estimator.Update(Hearing({Leader(ZetaOf(0.0))}), kPeriod_s);
+  EXPECT_LE(ticks * kPeriod_s, last.x_m[0] / config.beta_1_m_s + (config.sync_ticks + 1) * kPeriod_s);
 }
 
 TEST(Estimator, IsSyncedAfterTheConfiguredTicksInBand) {
-  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   config.sync_ticks = 4;
   Estimator estimator(config, ZetaOf(1.0));
   for (int k = 1; k <= 6; ++k) {
-    estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kH_s);
+    estimator.Update(Hearing({Leader(ZetaOf(1.0))}), kPeriod_s);
     EXPECT_EQ(estimator.agreement(), k);
     EXPECT_EQ(estimator.synced(), k >= 4);
   }
 }
 
 TEST(Estimator, AgreementIsAtMostOneMoreThanUpstream) {
-  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
+  Estimator estimator(ConfigOf(EstimatorKind::kImplicit), ZetaOf(1.0));
   Neighbour upstream = Leader(ZetaOf(1.0));
   for (const int theirs : {0, 0, 0, 1, 1, 7}) {
     upstream.agreement = theirs;
-    estimator.Update(Hearing({Leader(ZetaOf(1.0)), upstream}), kH_s);
+    estimator.Update(Hearing({Leader(ZetaOf(1.0)), upstream}), kPeriod_s);
     EXPECT_LE(estimator.agreement(), theirs + 1);
   }
   EXPECT_EQ(estimator.agreement(), 3);  // 1, 1, 1, 2, 2, then one more tick of its own
 }
 
 TEST(Estimator, IsNotSyncedWhileANeighbourInUseIsUnheard) {
-  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(1.0));
+  Estimator estimator(ConfigOf(EstimatorKind::kImplicit), ZetaOf(1.0));
   Neighbour silent = Leader(ZetaOf(1.0));
   silent.heard = false;
-  for (int k = 0; k < 50; ++k) estimator.Update(Hearing({Leader(ZetaOf(1.0)), silent}), kH_s);
+  for (int k = 0; k < 50; ++k) estimator.Update(Hearing({Leader(ZetaOf(1.0)), silent}), kPeriod_s);
   EXPECT_TRUE(estimator.in_band());
   EXPECT_FALSE(estimator.synced());
 }
 
 TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
-  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   config.sync_ticks = 3;
   config.desync_ticks = 8;
   Estimator estimator(config, ZetaOf(1.0));
   const Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
   const auto tick = [&](const Neighbours& heard, int count) {
-    for (int k = 0; k < count; ++k) estimator.Update(heard, kH_s);
+    for (int k = 0; k < count; ++k) estimator.Update(heard, kPeriod_s);
   };
   tick(leader, config.sync_ticks);
   ASSERT_TRUE(estimator.synced());
@@ -360,7 +354,7 @@ TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
   EXPECT_EQ(estimator.agreement(), 0);
   tick(leader, config.sync_ticks);  // agreement is back: the count begins anew
   EXPECT_TRUE(estimator.synced());
-  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s));
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kPeriod_s));
   tick(lost, news_ticks + config.desync_ticks - 2);
   EXPECT_TRUE(estimator.synced());
   tick(lost, 3);
@@ -370,34 +364,34 @@ TEST(Estimator, StaysSyncedThroughAShortLossAndNoLonger) {
 }
 
 TEST(Estimator, ANeighbourSilentForTooLongIsNotHeardAnyMore) {
-  const EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  const EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   Estimator estimator(config, ZetaOf(1.0));
   Neighbours leader = Hearing({Leader(ZetaOf(1.0))});
-  for (int k = 0; k < config.sync_ticks; ++k) estimator.Update(leader, kH_s);
+  for (int k = 0; k < config.sync_ticks; ++k) estimator.Update(leader, kPeriod_s);
   ASSERT_TRUE(estimator.synced());
   const auto update_at_age = [&](double age_s) {
     leader.list[0].age_s = leader.list[0].leader_age_s = age_s;
-    estimator.Update(leader, kH_s);
+    estimator.Update(leader, kPeriod_s);
   };
-  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kH_s));
-  for (int k = 1; k < news_ticks; ++k) update_at_age(k * kH_s);
+  const int news_ticks = static_cast<int>(std::lround(config.age_max_s / kPeriod_s));
+  for (int k = 1; k < news_ticks; ++k) update_at_age(k * kPeriod_s);
   update_at_age(config.age_max_s);
   EXPECT_GT(estimator.agreement(), 0) << "the bound itself is allowed";
-  for (int k = 1; k <= config.desync_ticks; ++k) update_at_age(config.age_max_s + k * kH_s);
+  for (int k = 1; k <= config.desync_ticks; ++k) update_at_age(config.age_max_s + k * kPeriod_s);
   EXPECT_EQ(estimator.agreement(), 0);
   EXPECT_FALSE(estimator.synced());
 }
 
 TEST(Estimator, AgreementStopsAtItsMaximum) {
-  Estimator estimator(Config(EstimatorKind::kImplicit), ZetaOf(0.0));
+  Estimator estimator(ConfigOf(EstimatorKind::kImplicit), ZetaOf(0.0));
   const Neighbours leader = Hearing({Leader(ZetaOf(0.0))});
-  for (int k = 0; k < Estimator::kMaxAgreement + 10; ++k) estimator.Update(leader, kH_s);
+  for (int k = 0; k < Estimator::kMaxAgreement + 10; ++k) estimator.Update(leader, kPeriod_s);
   EXPECT_EQ(estimator.agreement(), Estimator::kMaxAgreement);
 }
 
 TEST(Estimator, LeaderlessStartsAtRest) {
   RandomArms random(5);
-  EstimatorConfig config = Config(EstimatorKind::kPredictive);
+  EstimatorConfig config = ConfigOf(EstimatorKind::kPredictive);
   config.leaderless = true;
   const Zeta own = RandomZeta(random);
   const Estimator estimator(config, own);

@@ -10,7 +10,7 @@
 namespace armada {
 namespace {
 
-const ImplicitControlConfig kConfig;
+const ImplicitControlConfig kImplicit;
 
 // H of a random arm plus damping: what the law minimises over.
 JointMatrix RandomStiffness(RandomArms& random, int dof) {
@@ -59,7 +59,7 @@ TEST(MinimizeWithL1, ConvergesWithinItsSweepsForThePapersArms) {
     const JointMatrix A = H + 0.01 * 100.0 * JointMatrix::Identity(arm.dof(), arm.dof());
     const JointVector b = H * random.Numbers(arm.dof(), 2.0);
     const JointVector w = JointVector::Constant(arm.dof(), 0.01 * 60.0);
-    ExpectOptimal(A, b, w, MinimizeWithL1(kConfig, A, b, w));
+    ExpectOptimal(A, b, w, MinimizeWithL1(kImplicit, A, b, w));
   }
 }
 
@@ -68,7 +68,7 @@ TEST(MinimizeWithL1, IsExactlyZeroInsideTheDeadBand) {
   for (int dof = 1; dof <= kMaxDof; ++dof) {
     const JointMatrix A = RandomStiffness(random, dof);
     const JointVector w = JointVector::Constant(dof, 0.6);
-    EXPECT_EQ(MinimizeWithL1(kConfig, A, random.Numbers(dof, 0.6), w), JointVector::Zero(dof));
+    EXPECT_EQ(MinimizeWithL1(kImplicit, A, random.Numbers(dof, 0.6), w), JointVector::Zero(dof));
   }
 }
 

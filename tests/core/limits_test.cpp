@@ -4,13 +4,12 @@
 
 #include <limits>
 
+#include "tests/support/numbers.h"
 #include "tests/support/random_arms.h"
 
 namespace armada {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const JointVector kLimit_Nm{{10.0, 20.0, 30.0}};
 
 TEST(TorqueGate, PassesWhatIsWithinTheLimits) {

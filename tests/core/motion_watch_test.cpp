@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/paper_setting.h"
+
 namespace armada {
 namespace {
-
-constexpr double kPeriod_s = 0.01;
 
 MotionSeen Fine() {
   return {.q_rad = JointVector::Zero(2),

@@ -10,6 +10,8 @@ namespace armada {
 
 /// Section 4 of the paper: arms, leader, graph and gains.
 
+inline constexpr double kPeriod_s = 0.01;
+
 /// Arm `id` (1 .. 7) of Table 1, base at the origin.
 inline PlanarArmConfig PaperArm(int id) {
   static constexpr std::array<int, 7> kDof = {2, 2, 2, 2, 2, 3, 3};
@@ -61,6 +63,9 @@ inline Digraph PaperGraph() {
   graph.SetWeight(5, 4, 1.0);
   return graph;
 }
+
+/// Of the robust law's reference, with the paper's alpha.
+inline constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
 
 /// The paper's gains, robust law, for an arm of `arm.dof` joints.
 inline ArmControllerConfig PaperController(const PlanarArmConfig& arm) {

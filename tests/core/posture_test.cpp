@@ -26,10 +26,6 @@ double ErrorOf(const SubtaskConfig& config, const PlanarArm& arm, const JointVec
   return PostureError(config, arm, q, arm.At(q));
 }
 
-double SigmaMin(const PlanarArm& arm, const JointVector& q) {
-  return DampedPseudoinverse({}, arm.Jacobian(arm.At(q))).sigma_min;
-}
-
 TEST(PostureError, LeadsToAGoalThatTheSelfMotionReaches) {
   RandomArms random(1);
   int blocked = 0;

@@ -10,7 +10,7 @@
 namespace armada {
 namespace {
 
-const ProjectionConfig kConfig;
+const ProjectionConfig kProjection;
 
 double SmallestEigenvalue(const Eigen::MatrixXd& matrix) {
   return matrix.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
@@ -20,10 +20,10 @@ TEST(Projection, EndsInTheSetAndStaysThere) {
   RandomArms random(1);
   for (const PlanarArm& arm : random.AllKinds(50)) {
     ParameterVector theta = random.Numbers<ParameterVector>(arm.parameter_count(), 100.0);
-    Project(kConfig, arm, theta);
-    EXPECT_TRUE(InProjectionSet(kConfig, arm, theta));
+    Project(kProjection, arm, theta);
+    EXPECT_TRUE(InProjectionSet(kProjection, arm, theta));
     const ParameterVector once = theta;
-    Project(kConfig, arm, theta);
+    Project(kProjection, arm, theta);
     EXPECT_EQ(theta, once);
   }
 }
@@ -32,7 +32,7 @@ TEST(Projection, KeepsTheEstimatedInertiaPositiveDefinite) {
   RandomArms random(2);
   for (const PlanarArm& arm : random.AllKinds(20)) {
     ParameterVector theta = random.Numbers<ParameterVector>(arm.parameter_count(), 100.0);
-    Project(kConfig, arm, theta);
+    Project(kProjection, arm, theta);
     for (int trial = 0; trial < 10; ++trial) {
       const JointMatrix H_hat = arm.Inertia(arm.At(random.Numbers(arm.dof(), 5.0)), theta);
       EXPECT_GT(SmallestEigenvalue(H_hat), 0.0);
@@ -45,7 +45,7 @@ TEST(Projection, WithoutItTheEstimateCanBeIndefinite) {
   ParameterVector theta{{1.0, 5.0, 1.0}};  // in the paper's box of starts
   const PlanarArm::Posture stretched = arm.At(JointVector::Zero(2));
   EXPECT_LT(SmallestEigenvalue(arm.Inertia(stretched, theta)), 0.0);
-  Project(kConfig, arm, theta);
+  Project(kProjection, arm, theta);
   EXPECT_GT(SmallestEigenvalue(arm.Inertia(stretched, theta)), 0.0);
 }
 
@@ -53,20 +53,20 @@ TEST(Projection, HoldsEveryBound) {
   RandomArms random(3);
   for (const PlanarArm& arm : random.AllKinds(20)) {
     ParameterVector theta = random.Numbers<ParameterVector>(arm.parameter_count(), 100.0);
-    Project(kConfig, arm, theta);
+    Project(kProjection, arm, theta);
     for (int a = 0; a < arm.dof(); ++a) {
       const double D_aa = theta[arm.InertiaIndex(a, a)];
-      EXPECT_GE(D_aa, kConfig.inertia_min_kgm2);
-      EXPECT_LE(D_aa, kConfig.inertia_max_kgm2);
+      EXPECT_GE(D_aa, kProjection.inertia_min_kgm2);
+      EXPECT_LE(D_aa, kProjection.inertia_max_kgm2);
       for (int b = a + 1; b < arm.dof(); ++b) {
         const double D_bb = theta[arm.InertiaIndex(b, b)];
-        const double share = kConfig.correlation_max / (arm.dof() - 1);
+        const double share = kProjection.correlation_max / (arm.dof() - 1);
         EXPECT_LE(std::abs(theta[arm.InertiaIndex(a, b)]), share * std::sqrt(D_aa * D_bb) * (1.0 + 1e-12));
       }
     }
     for (int p = arm.InertiaParameterCount(); p < arm.parameter_count(); ++p) {
-      EXPECT_GE(theta[p], kConfig.gravity_min_kgm);
-      EXPECT_LE(theta[p], kConfig.gravity_max_kgm);
+      EXPECT_GE(theta[p], kProjection.gravity_min_kgm);
+      EXPECT_LE(theta[p], kProjection.gravity_max_kgm);
     }
   }
 }
@@ -77,9 +77,9 @@ TEST(Projection, LeavesThePapersArmsAlone) {
       PlanarArmConfig config = PaperArm(id);
       config.gravity_m_s2 = gravity_m_s2;
       const PlanarArm arm(config);
-      EXPECT_TRUE(InProjectionSet(kConfig, arm, arm.Theta())) << "arm " << id;
+      EXPECT_TRUE(InProjectionSet(kProjection, arm, arm.Theta())) << "arm " << id;
       ParameterVector theta = arm.Theta();
-      Project(kConfig, arm, theta);
+      Project(kProjection, arm, theta);
       EXPECT_EQ(theta, arm.Theta());
     }
   }
@@ -93,15 +93,15 @@ TEST(Projection, MembershipSeesEachBound) {
   const auto with = [&](int index, double value) {
     ParameterVector theta = inside;
     theta[index] = value;
-    return InProjectionSet(kConfig, arm, theta);
+    return InProjectionSet(kProjection, arm, theta);
   };
-  EXPECT_TRUE(InProjectionSet(kConfig, arm, inside));
-  EXPECT_FALSE(with(0, kConfig.inertia_min_kgm2 - 0.01));
-  EXPECT_FALSE(with(2, kConfig.inertia_max_kgm2 + 0.01));
+  EXPECT_TRUE(InProjectionSet(kProjection, arm, inside));
+  EXPECT_FALSE(with(0, kProjection.inertia_min_kgm2 - 0.01));
+  EXPECT_FALSE(with(2, kProjection.inertia_max_kgm2 + 0.01));
   EXPECT_FALSE(with(1, std::sqrt(inside[0] * inside[2])));
   EXPECT_FALSE(with(1, -std::sqrt(inside[0] * inside[2])));
-  EXPECT_FALSE(with(3, kConfig.gravity_min_kgm - 0.01));
-  EXPECT_FALSE(with(4, kConfig.gravity_max_kgm + 0.01));
+  EXPECT_FALSE(with(3, kProjection.gravity_min_kgm - 0.01));
+  EXPECT_FALSE(with(4, kProjection.gravity_max_kgm + 0.01));
 }
 
 }  // namespace

@@ -15,8 +15,6 @@ namespace {
 const ReferenceConfig kReference;
 const PseudoinverseConfig kPseudoinverse;
 
-constexpr Approach kApproach{.alpha_1_s = 50.0, .braking_m_s2 = 6.0, .speed_m_s = 2.0};
-
 TEST(Approach, IsLinearThenBrakingThenConstant) {
   const double linear_until_m = kApproach.braking_m_s2 / (kApproach.alpha_1_s * kApproach.alpha_1_s);
   EXPECT_DOUBLE_EQ(kApproach.Speed(0.0), 0.0);
@@ -88,10 +86,6 @@ JointVector ReferenceOf(const PlanarArm& arm, const JointVector& q, const Zeta& 
 Zeta NearbyTarget(const PlanarArm& arm, const JointVector& q, RandomArms& random) {
   return {arm.Position(arm.At(q)) + random.Numbers<TaskVector>(2, 0.05), random.Numbers<TaskVector>(2, 0.3),
           random.Numbers<TaskVector>(2, 1.0)};
-}
-
-double SigmaMin(const PlanarArm& arm, const JointVector& q) {
-  return DampedPseudoinverse(kPseudoinverse, arm.Jacobian(arm.At(q))).sigma_min;
 }
 
 TEST(ReferenceVelocity, MovesTheEndEffectorAsWantedAwayFromSingularities) {  // (1.5)

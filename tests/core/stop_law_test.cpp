@@ -6,12 +6,12 @@
 
 #include <limits>
 
+#include "tests/core/paper_setting.h"
 #include "tests/support/random_arms.h"
 
 namespace armada {
 namespace {
 
-constexpr double kPeriod_s = 0.01;
 constexpr double kLatency_s = 0.001;
 
 /// An arm under a law without network, its torque in force one millisecond after the sample.

@@ -5,12 +5,12 @@
 #include <set>
 #include <vector>
 
+#include "tests/core/paper_setting.h"
+
 namespace armada {
 namespace {
 
 using State = ControllerState;
-
-constexpr double kPeriod_s = 0.01;
 
 SupervisorInput Quiet() {
   SupervisorInput in;

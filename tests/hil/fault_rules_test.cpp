@@ -14,11 +14,12 @@
 namespace armada {
 namespace {
 
-const std::string kSource = ARMADA_SOURCE_DIR;
+const std::string kSourceFolder = ARMADA_SOURCE_DIR;
 
 // Line 3 begins the fault.
 std::string WithFault(const std::string& fault) {
-  return "name = \"test\"\nbase = \"" + kSource + "/hil/scenarios/paper.toml\"\n[[fault]]\n" + fault + "\n";
+  return "name = \"test\"\nbase = \"" + kSourceFolder + "/hil/scenarios/paper.toml\"\n[[fault]]\n" + fault +
+         "\n";
 }
 
 class FaultRule : public testing::TestWithParam<ConfigCase> {};
@@ -126,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(FaultRules, AFaultOfTheLeaderNeedsOne) {
   std::vector<ConfigError> errors;
-  EXPECT_FALSE(LoadScenario(kSource + "/hil/scenarios/leaderless.toml",
+  EXPECT_FALSE(LoadScenario(kSourceFolder + "/hil/scenarios/leaderless.toml",
                             {"fault=[{kind=\"leader_dies\",at_s=1.0}]"}, &errors));
   EXPECT_NE(Text(errors).find("fault.1.arm: meant for the leader, but there is none"), std::string::npos)
       << Text(errors);
@@ -137,7 +138,7 @@ TEST(FaultMeaning, EveryKindHasOne) {
 }
 
 TEST(FaultMeaning, IsWhatTheDocumentationSays) {
-  std::ifstream stream(kSource + "/docs/faults.md");
+  std::ifstream stream(kSourceFolder + "/docs/faults.md");
   std::stringstream committed;
   committed << stream.rdbuf();
   EXPECT_NE(committed.str().find(FaultTables()), std::string::npos)

@@ -74,9 +74,10 @@ TEST(FaultyWire, IsCutWhileTheBusIsOffOrDown) {
 }
 
 /// One joint of 2 kg m^2 that is commanded 8 N m every 10 ms from 0 on.
-class Bench {
+class WireBench {
  public:
-  explicit Bench(const std::vector<FaultConfig>& faults) : arm_(Scenario(faults), 0, 1, {}, nullptr, 0.0) {
+  explicit WireBench(const std::vector<FaultConfig>& faults)
+      : arm_(Scenario(faults), 0, 1, {}, nullptr, 0.0) {
     Send(0.0,
          odrive::EncodeSetControllerMode(0, {odrive::ControlMode::kTorque, odrive::InputMode::kPassthrough}));
     Send(0.0, odrive::EncodeSetAxisState(0, odrive::AxisState::kClosedLoop));
@@ -120,7 +121,7 @@ class Bench {
 
 // The last frame that arrives is that of 0.99 s: 30 ms later there is no torque any more.
 TEST(EmulatedArmOnAFaultyWire, ADriveThatHearsNothingTripsItsWatchdog) {
-  Bench bench({Fault(FaultKind::kBusOff)});
+  WireBench bench({Fault(FaultKind::kBusOff)});
   bench.AdvanceTo(1.0195);
   EXPECT_EQ(bench.arm().Torque()[0], 8.0);
   bench.AdvanceTo(1.0205);
@@ -130,7 +131,7 @@ TEST(EmulatedArmOnAFaultyWire, ADriveThatHearsNothingTripsItsWatchdog) {
 }
 
 TEST(EmulatedArmOnAFaultyWire, AnswersComeTwiceTheDelayLater) {
-  Bench bench({Fault(FaultKind::kBusDelay, 0.002)});
+  WireBench bench({Fault(FaultKind::kBusDelay, 0.002)});
   bench.AdvanceTo(1.0);
   bench.answers();
   bench.AdvanceTo(1.0035);

@@ -45,7 +45,7 @@ edges = []
 )";
 
 // Drives without a watchdog: how long this test is held up must not matter.
-constexpr char kScenario[] = R"(
+constexpr char kProcessScenario[] = R"(
 name = "one"
 fleet = "fleet.toml"
 seconds = 100.0
@@ -105,7 +105,7 @@ class HilProcessTest : public testing::Test {
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
     folder_ = pattern;
     std::ofstream(folder_ / "fleet.toml") << kFleet;
-    std::ofstream(folder_ / "scenario.toml") << kScenario;
+    std::ofstream(folder_ / "scenario.toml") << kProcessScenario;
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 

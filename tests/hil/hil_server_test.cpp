@@ -86,7 +86,7 @@ BusStatus MemoryBus::Receive(int64_t, CanFrame* frame) {
 }
 
 /// Two arms with drives that do not time out: arm 3 with one joint, arm 8 with two.
-ScenarioConfig Scenario() {
+ScenarioConfig ServedScenario() {
   ScenarioConfig scenario;
   scenario.seconds = 2.0;
   scenario.window_start_s = 0.5;
@@ -156,7 +156,7 @@ class Rig {
     return found;
   }
 
-  ScenarioConfig scenario = Scenario();
+  ScenarioConfig scenario = ServedScenario();
   uint64_t seed = 5;
   FakeClock clock;
   std::vector<std::unique_ptr<CanBus>> buses;
@@ -351,7 +351,7 @@ TEST(HilServer, HearsADriveThatIsActiveBeforeTheStart) {
   Rig rig;
   rig.Bus(1).Schedule(rig.clock.now_ns + 20 * kMs, odrive::EncodeEncoderRequest(1));
   rig.Bus(1).Schedule(rig.clock.now_ns + 90 * kMs, odrive::EncodeHeartbeat(2, odrive::Firmware::kV06, {}));
-  const auto drive = FindActiveDrive(Scenario().fleet, rig.buses, 150 * kMs, &rig.clock);
+  const auto drive = FindActiveDrive(ServedScenario().fleet, rig.buses, 150 * kMs, &rig.clock);
   ASSERT_TRUE(drive.has_value());
   EXPECT_EQ(drive->bus, 1u);
   EXPECT_EQ(drive->node_id, 2);
@@ -362,7 +362,7 @@ TEST(HilServer, HearsNoDriveInTheFramesOfABoard) {
   rig.ScheduleBoard(0);
   rig.Bus(0).Schedule(rig.clock.now_ns + 151 * kMs, odrive::EncodeHeartbeat(1, odrive::Firmware::kV06, {}));
   const int64_t start_ns = rig.clock.now_ns;
-  EXPECT_FALSE(FindActiveDrive(Scenario().fleet, rig.buses, 150 * kMs, &rig.clock).has_value());
+  EXPECT_FALSE(FindActiveDrive(ServedScenario().fleet, rig.buses, 150 * kMs, &rig.clock).has_value());
   EXPECT_EQ(rig.clock.now_ns - start_ns, 150 * kMs);
 }
 

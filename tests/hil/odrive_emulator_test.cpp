@@ -25,7 +25,7 @@ constexpr int kNode = 3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr JointTruth kTruth{0.7, -1.5};
 
-JointDriveConfig Joint(Firmware firmware = Firmware::kV06) {
+JointDriveConfig ODriveJoint(Firmware firmware = Firmware::kV06) {
   JointDriveConfig joint;
   joint.profile =
       firmware == Firmware::kV05 ? DriveProfile::kODriveCanSimpleV05 : DriveProfile::kODriveCanSimple;
@@ -38,11 +38,11 @@ JointDriveConfig Joint(Firmware firmware = Firmware::kV06) {
 }
 
 /// An emulated axis with a bus that keeps what it sends.
-class Bench {
+class ODriveBench {
  public:
-  explicit Bench(const EmulatedDriveConfig& config = {}, uint64_t seed = 1,
-                 Firmware generation = Firmware::kV06)
-      : firmware(generation), axis(Joint(generation), config, seed) {}
+  explicit ODriveBench(const EmulatedDriveConfig& config = {}, uint64_t seed = 1,
+                       Firmware generation = Firmware::kV06)
+      : firmware(generation), axis(ODriveJoint(generation), config, seed) {}
 
   void Send(double t_s, const CanFrame& frame) { axis.OnFrame(t_s, frame, kTruth, &sent); }
   void Advance(double t_s) { axis.OnTime(t_s, kTruth, &sent); }
@@ -85,7 +85,7 @@ EmulatedDriveConfig NoWatchdog() {
 }
 
 TEST(ODriveEmulator, ATorqueHoldsFromOneLatencyAfterItsFrame) {
-  Bench bench;
+  ODriveBench bench;
   bench.Arm(1.0);
   bench.SetTorque(1.010, 2.0f);
   bench.SetTorque(1.020, -3.0f);
@@ -97,7 +97,7 @@ TEST(ODriveEmulator, ATorqueHoldsFromOneLatencyAfterItsFrame) {
 TEST(ODriveEmulator, SeveralTorquesWithinOneLatencyAllTakeTheirTurn) {
   EmulatedDriveConfig config;
   config.latency_s = 0.005;
-  Bench bench(config);
+  ODriveBench bench(config);
   bench.Arm(1.0);
   for (int k = 1; k <= 4; ++k) bench.SetTorque(1.0 + 0.001 * k, static_cast<float>(k));
   EXPECT_EQ(bench.axis.Torque(1.0055), 0.0);
@@ -110,14 +110,14 @@ TEST(ODriveEmulator, SeveralTorquesWithinOneLatencyAllTakeTheirTurn) {
 TEST(ODriveEmulator, MoreTorquesThanThereIsRoomForEndWithTheLast) {
   EmulatedDriveConfig config;
   config.latency_s = 0.01;
-  Bench bench(config);
+  ODriveBench bench(config);
   bench.Arm(1.0);
   for (int k = 1; k <= 50; ++k) bench.SetTorque(1.0 + 0.0001 * k, static_cast<float>(0.1 * k));
   EXPECT_FLOAT_EQ(static_cast<float>(bench.axis.Torque(1.02)), -50.0f);
 }
 
 TEST(ODriveEmulator, HasATorqueLimitOfItsOwn) {
-  Bench bench;
+  ODriveBench bench;
   bench.Arm(1.0);
   bench.SetTorque(1.0, 1e9f);
   EXPECT_EQ(bench.axis.Torque(1.002), -150.0);
@@ -126,7 +126,7 @@ TEST(ODriveEmulator, HasATorqueLimitOfItsOwn) {
 }
 
 TEST(ODriveEmulator, TorqueThatIsNotFiniteIsNotTaken) {
-  Bench bench;
+  ODriveBench bench;
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   bench.SetTorque(1.001, NAN);
@@ -135,7 +135,7 @@ TEST(ODriveEmulator, TorqueThatIsNotFiniteIsNotTaken) {
 }
 
 TEST(ODriveEmulator, ProducesNothingUnlessInClosedLoopAndInTorqueControl) {
-  Bench bench(NoWatchdog());
+  ODriveBench bench(NoWatchdog());
   bench.SetTorque(1.0, 2.0f);
   EXPECT_EQ(bench.axis.Torque(2.0), 0.0) << "idle";
   EXPECT_FALSE(bench.axis.ProducesTorque());
@@ -157,7 +157,7 @@ class Generation : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Both, Generation, testing::Values(Firmware::kV05, Firmware::kV06), Name);
 
 TEST_P(Generation, SilenceTripsTheWatchdogAtItsTimeAndLatchesAnError) {
-  Bench bench({}, 1, GetParam());
+  ODriveBench bench({}, 1, GetParam());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   const double expiry_s = 1.0 + 0.03;
@@ -182,7 +182,7 @@ TEST_P(Generation, SilenceTripsTheWatchdogAtItsTimeAndLatchesAnError) {
 }
 
 TEST_P(Generation, AnEmergencyStopDisarmsAndLatches) {
-  Bench bench(NoWatchdog(), 1, GetParam());
+  ODriveBench bench(NoWatchdog(), 1, GetParam());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   bench.Send(1.01, odrive::EncodeEstop(kNode));
@@ -193,7 +193,7 @@ TEST_P(Generation, AnEmergencyStopDisarmsAndLatches) {
 }
 
 TEST(ODriveEmulator, EveryFrameWithItsNodeIdFeedsTheWatchdogAndNoOther) {
-  Bench bench;
+  ODriveBench bench;
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   bench.Send(1.02, odrive::EncodeEncoderRequest(kNode));
@@ -203,7 +203,7 @@ TEST(ODriveEmulator, EveryFrameWithItsNodeIdFeedsTheWatchdogAndNoOther) {
 }
 
 TEST(ODriveEmulator, AWatchdogOfZeroIsOff) {
-  Bench bench(NoWatchdog());
+  ODriveBench bench(NoWatchdog());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   bench.Advance(1000.0);
@@ -212,15 +212,15 @@ TEST(ODriveEmulator, AWatchdogOfZeroIsOff) {
 }
 
 TEST(ODriveEmulator, EstimatesAreTheJointSeenFromTheMotor) {
-  Bench bench;
+  ODriveBench bench;
   const odrive::EncoderEstimates estimates = bench.Estimates(0.0, {0.5 + std::numbers::pi, 2.0});
   EXPECT_FLOAT_EQ(estimates.position_turns, -5.0f) << "half a joint turn, gear 10, backwards";
   EXPECT_FLOAT_EQ(estimates.velocity_turns_s, static_cast<float>(-10.0 / std::numbers::pi));
 }
 
 TEST(ODriveEmulator, TheMastersCodecReadsBackTheJoint) {
-  Bench bench;
-  ODriveCanSimple master(Joint());
+  ODriveBench bench;
+  ODriveCanSimple master(ODriveJoint());
   bench.Estimates(0.0, {-2.25, 3.5});
   ASSERT_EQ(master.OnFrame(bench.sent[0]), Reception::kTaken);
   EXPECT_NEAR(master.sample().position_rad, -2.25, 1e-6);
@@ -230,7 +230,7 @@ TEST(ODriveEmulator, TheMastersCodecReadsBackTheJoint) {
 TEST(ODriveEmulator, PositionsAreWholeCountsWithinHalfACountOfTheTruth) {
   EmulatedDriveConfig config;
   config.encoder_counts_per_turn = 4096;
-  Bench bench(config);
+  ODriveBench bench(config);
   for (double q_rad = -3.0; q_rad < 3.0; q_rad += 0.01) {
     const double counts = 4096.0 * static_cast<double>(bench.Estimates(0.0, {q_rad, 0.0}).position_turns);
     EXPECT_EQ(counts, std::round(counts));
@@ -241,9 +241,9 @@ TEST(ODriveEmulator, PositionsAreWholeCountsWithinHalfACountOfTheTruth) {
 TEST(ODriveEmulator, VelocityNoiseHasTheGivenDeviationAndIsTheSameForASeed) {
   EmulatedDriveConfig config = NoWatchdog();
   config.velocity_noise_rad_s = 0.2;
-  Bench bench(config, 11);
-  Bench same(config, 11);
-  Bench other(config, 12);
+  ODriveBench bench(config, 11);
+  ODriveBench same(config, 11);
+  ODriveBench other(config, 12);
   constexpr int kSamples = 20000;
   double sum = 0.0;
   double sum_of_squares = 0.0;
@@ -264,7 +264,7 @@ TEST(ODriveEmulator, VelocityNoiseHasTheGivenDeviationAndIsTheSameForASeed) {
 TEST(ODriveEmulator, HeartbeatsAndCyclicEstimatesComeAtTheirTimesAndNotTwice) {
   EmulatedDriveConfig config = NoWatchdog();
   config.feedback_period_s = 0.03;
-  Bench bench(config);
+  ODriveBench bench(config);
   std::vector<double> heartbeats_s;
   std::vector<double> estimates_s;
   for (double t_s = bench.axis.NextEvent(0.0); t_s < 1.0; t_s = bench.axis.NextEvent(t_s)) {
@@ -288,7 +288,7 @@ TEST(ODriveEmulator, HeartbeatsAndCyclicEstimatesComeAtTheirTimesAndNotTwice) {
 TEST(ODriveEmulator, WhatFellDueManyTimesIsSentOnce) {
   EmulatedDriveConfig config = NoWatchdog();
   config.feedback_period_s = 0.01;
-  Bench bench(config);
+  ODriveBench bench(config);
   bench.Advance(3600.05);
   EXPECT_EQ(bench.sent.size(), 2u);
   EXPECT_GT(bench.axis.NextEvent(3600.05), 3600.05);
@@ -298,7 +298,7 @@ TEST(ODriveEmulator, WhatFellDueManyTimesIsSentOnce) {
 TEST(ODriveEmulator, RoundingOfTheTimeSendsNothingTwice) {
   EmulatedDriveConfig config = NoWatchdog();
   config.feedback_period_s = 0.01;
-  Bench bench(config);
+  ODriveBench bench(config);
   const double t_s = 29 * 0.01;
   ASSERT_LT(t_s / 0.01, 29.0) << "a time whose quotient is rounded down";
   bench.Advance(t_s);
@@ -308,7 +308,7 @@ TEST(ODriveEmulator, RoundingOfTheTimeSendsNothingTwice) {
 }
 
 TEST(ODriveEmulator, FramesItDoesNotKnowOrThatAreCutChangeNothing) {
-  Bench bench(NoWatchdog());
+  ODriveBench bench(NoWatchdog());
   bench.Arm(1.0);
   bench.SetTorque(1.0, 2.0f);
   CanFrame cut = odrive::EncodeSetInputTorque(kNode, 5.0f);
@@ -328,7 +328,7 @@ TEST(ODriveEmulator, FramesItDoesNotKnowOrThatAreCutChangeNothing) {
 
 /// The master's codec and the drive on a bus that may lose frames, at 100 Hz.
 struct Loop {
-  explicit Loop(Firmware generation) : master(Joint(generation)), bench({}, 1, generation) {}
+  explicit Loop(Firmware generation) : master(ODriveJoint(generation)), bench({}, 1, generation) {}
 
   template <class Lose>
   void Tick(double tau_Nm, Lose lose) {
@@ -351,7 +351,7 @@ struct Loop {
   }
 
   ODriveCanSimple master;
-  Bench bench;
+  ODriveBench bench;
   FrameList from_master;
   int ticks = 0;
 };
@@ -410,7 +410,7 @@ TEST(ODriveEmulator, AfterAWatchdogTripTheMasterDoesNotArmAgainByItself) {
 TEST(ODriveEmulator, NothingAllocates) {
   EmulatedDriveConfig config;
   config.velocity_noise_rad_s = 0.1;
-  Bench bench(config);
+  ODriveBench bench(config);
   const LimitMalloc guard;
   bench.Arm(0.0);
   for (int i = 0; i < 1000; ++i) {

@@ -5,7 +5,7 @@
 namespace armada {
 namespace {
 
-ScenarioConfig Scenario() {
+ScenarioConfig RecordedScenario() {
   ScenarioConfig scenario;
   scenario.window_start_s = 2.0;
   scenario.criterion.error_max_m = 0.02;
@@ -13,7 +13,7 @@ ScenarioConfig Scenario() {
 }
 
 TEST(TrackingRecord, MeasuresTheWindowOnly) {
-  TrackingRecord record(Scenario());
+  TrackingRecord record(RecordedScenario());
   record.Update(1.999, 5.0);
   record.Update(2.0, 0.003);
   record.Update(2.001, -0.0);
@@ -25,7 +25,7 @@ TEST(TrackingRecord, MeasuresTheWindowOnly) {
 }
 
 TEST(TrackingRecord, IsSettledFromTheLastEntryIntoTheBand) {
-  TrackingRecord record(Scenario());
+  TrackingRecord record(RecordedScenario());
   EXPECT_FALSE(record.settled_s().has_value());
   record.Update(0.1, 0.5);
   EXPECT_FALSE(record.settled_s().has_value());
@@ -39,7 +39,7 @@ TEST(TrackingRecord, IsSettledFromTheLastEntryIntoTheBand) {
 }
 
 TEST(TrackingRecord, IsZeroWithoutSamples) {
-  const TrackingRecord record(Scenario());
+  const TrackingRecord record(RecordedScenario());
   EXPECT_EQ(record.count(), 0);
   EXPECT_EQ(record.rms_m(), 0.0);
 }

@@ -21,30 +21,30 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-CandumpLine Read(const std::string& text) {
+CandumpLine ReadLine(const std::string& text) {
   CandumpLine line;
   EXPECT_TRUE(ParseCandumpLine(text, &line)) << text;
   return line;
 }
 
 std::string DecodeLine(DriveProfile profile, const std::string& text) {
-  return Decode(MessagesOfProfile(profile), Read(text).frame);
+  return Decode(MessagesOfProfile(profile), ReadLine(text).frame);
 }
 
 // Lines as can-utils' candump(1) and log2asc take them.
 TEST(CandumpReader, ReadsWhatCandumpWrites) {
-  const CandumpLine line = Read("(1436509052.249713) vcan0 044#2A366C2BBA");
+  const CandumpLine line = ReadLine("(1436509052.249713) vcan0 044#2A366C2BBA");
   EXPECT_EQ(line.time_ns, 1'436'509'052'249'713'000);
   EXPECT_EQ(line.channel, "vcan0");
   EXPECT_EQ(line.frame.id, 0x44u);
   EXPECT_FALSE(line.frame.extended);
   EXPECT_EQ(line.frame.length, 5);
   EXPECT_EQ(line.frame.data[4], 0xBA);
-  EXPECT_TRUE(Read("(1.0) can0 00000044#").frame.extended);
-  EXPECT_TRUE(Read("(1.0) can0 20000040#0000000000000000").frame.error);
-  EXPECT_TRUE(Read("(1.0) can0 123##31122").frame.error_state_indicator);
-  EXPECT_EQ(Read("(1.0) can0 029#R8").frame.length, 8);
-  EXPECT_EQ(Read("(1.0) can0 029#00 R").frame.length, 1);
+  EXPECT_TRUE(ReadLine("(1.0) can0 00000044#").frame.extended);
+  EXPECT_TRUE(ReadLine("(1.0) can0 20000040#0000000000000000").frame.error);
+  EXPECT_TRUE(ReadLine("(1.0) can0 123##31122").frame.error_state_indicator);
+  EXPECT_EQ(ReadLine("(1.0) can0 029#R8").frame.length, 8);
+  EXPECT_EQ(ReadLine("(1.0) can0 029#00 R").frame.length, 1);
 }
 
 TEST(CandumpReader, GivesBackWhatOurLogWrote) {
@@ -52,7 +52,7 @@ TEST(CandumpReader, GivesBackWhatOurLogWrote) {
        Conversation(std::array{JointDriveConfig{.profile = DriveProfile::kMoteus, .node_id = 1}})) {
     std::array<char, kMaxCanLogLine> text{};
     const size_t size = FormatCanLogLine(5'000'007'000, "can3", frame, text);
-    const CandumpLine line = Read(std::string(text.data(), size - 1));
+    const CandumpLine line = ReadLine(std::string(text.data(), size - 1));
     ASSERT_EQ(RawText(line.frame), RawText(frame));
     ASSERT_EQ(line.time_ns, 5'000'007'000);
   }

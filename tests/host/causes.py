@@ -21,20 +21,7 @@ import tempfile
 import threading
 import time
 
-NO_RIGHTS = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
-if os.geteuid() == 0:
-    NO_RIGHTS += ["setpriv", "--bounding-set=-sys_nice,-ipc_lock", "--inh-caps=-sys_nice,-ipc_lock"]
-
-
-@contextlib.contextmanager
-def busy_loops(count):
-    loops = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(count)]
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
+from disturbances import NO_RIGHTS, busy_loops
 
 
 def programs_of(folder, everything):

@@ -28,10 +28,13 @@ done
 echo '#include "firmware/shared.h"
 void UsesArm(shared::Arm /*arm*/) {}' >firmware/user.cpp
 
+batch=build/one/Unity/unity_0_cxx.cxx  # as CMake makes them
+
 lint() { # leaves $code and the file `output`
   {
     printf 'rule cc\n  command = g++ -std=c++20 -I%s -o $out -c $in -MD -MF $out.d\n  deps = gcc\n  depfile = $out.d\n' "$box"
     for file in firmware/*.cpp; do printf 'build %s.o: cc %s\n' "$(basename $file)" "$box/$file"; done
+    [[ ! -e $batch ]] || printf 'build batch.o: cc %s\n' "$box/$batch"
   } >build/one/build.ninja
   ninja -C build/one >/dev/null
   ninja -C build/one -t compdb >build/one/compile_commands.json
@@ -85,6 +88,18 @@ lint
 check 'what another source of the batch uses is unused in this one' says 'using decl '\''Arm'\'' is unused'
 check 'and in no other' says '5 files, 2 checked'
 sed -i 2d firmware/first.cpp
+
+mkdir -p build/one/Unity firmware/batch
+for name in sixth seventh; do
+  printf 'int %s() {\n  return 6;\n}\n' $name >firmware/batch/$name.cpp
+  printf '#include "%s"\n\n' "$box/firmware/batch/$name.cpp" >>$batch
+done
+lint
+check 'the sources of a batch of the compiler are checked' says '7 files, 2 checked'
+echo 'int* Nowhere() { return 0; }' >>firmware/batch/seventh.cpp
+lint
+check 'a fault in one is found' says 'firmware/batch/seventh.cpp:4:25: error: use nullptr [modernize-use-nullptr'
+check 'and the other is not checked again' says '7 files, 1 checked'
 
 ((failed == 0)) || exit 1
 echo 'all as promised'

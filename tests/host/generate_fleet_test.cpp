@@ -28,7 +28,7 @@ std::string TextOf(const FleetPlan& plan) {
   return text.value_or("");
 }
 
-FleetConfig Read(const std::string& text) {
+FleetConfig ReadFleet(const std::string& text) {
   std::vector<ConfigError> errors;
   auto tree = ParseToml(text, "generated", &errors);
   auto loaded = tree ? FleetFromTree(std::move(*tree), "generated", &errors) : std::nullopt;
@@ -37,7 +37,7 @@ FleetConfig Read(const std::string& text) {
 }
 
 FleetConfig Fleet(const FleetPlan& plan) {
-  return Read(TextOf(plan));
+  return ReadFleet(TextOf(plan));
 }
 
 std::vector<int> Depths(const FleetConfig& fleet) {

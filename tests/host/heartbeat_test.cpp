@@ -7,11 +7,10 @@
 #include <csignal>
 
 #include "firmware/app/realtime.h"
+#include "tests/support/numbers.h"
 
 namespace armada {
 namespace {
-
-constexpr int64_t kMs = 1'000'000;
 
 int64_t Length(const Stall& stall) {
   return stall.end_ns - stall.begin_ns;

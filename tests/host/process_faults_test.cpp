@@ -10,13 +10,13 @@
 #include <filesystem>
 
 #include "firmware/clock/machine_clock.h"
+#include "tests/support/numbers.h"
 
 namespace armada {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int64_t kMs = 1'000'000;
 constexpr double kLate_s = 0.05;  // on a busy machine without the right to real-time priority
 
 FaultConfig Fault(FaultKind kind, double at_s, double until_s = FaultConfig::kForGood_s) {

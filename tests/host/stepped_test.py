@@ -23,6 +23,8 @@ import tempfile
 import threading
 import time
 
+from disturbances import NO_RIGHTS, busy_loops
+
 PROGRAMS = ("armada-arm", "armada-hil", "armada-leader")
 STOP_S = 0.1
 
@@ -41,17 +43,6 @@ def left_by(folder):
         for path in sorted(folder.glob(pattern)):
             left[path.name] = hashlib.sha256(path.read_bytes()).hexdigest()
     return left
-
-
-@contextlib.contextmanager
-def busy_loops(count):
-    loops = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(count)]
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
 
 
 def programs_of(folder):
@@ -89,10 +80,6 @@ def stopping(folder):
         thread.join()
     assert stops, "nothing was stopped"
 
-
-NO_RIGHTS = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
-if os.geteuid() == 0:
-    NO_RIGHTS += ["setpriv", "--bounding-set=-sys_nice,-ipc_lock", "--inh-caps=-sys_nice,-ipc_lock"]
 
 CONDITIONS = {
     "idle": ([], lambda folder: contextlib.nullcontext()),

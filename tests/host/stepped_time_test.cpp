@@ -17,6 +17,7 @@
 #include "firmware/can/open_bus.h"
 #include "firmware/clock/machine_clock.h"
 #include "tests/link/private_network_fixture.h"
+#include "tests/support/numbers.h"
 #include "tests/support/temp_dir.h"
 
 namespace armada {
@@ -24,8 +25,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-
-constexpr int64_t kMs = 1'000'000;
 
 class SteppedTimeTest : public PrivateNetworkTest {
  protected:

@@ -9,16 +9,12 @@
 #include "host/report/csv_table.h"
 #include "host/report/report.h"
 #include "tests/host/sweep_samples.h"
+#include "tests/support/temp_dir.h"
 
 namespace armada {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string ReadText(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// A folder of this test's own.
 fs::path Folder() {
@@ -30,7 +26,7 @@ fs::path Folder() {
   return folder;
 }
 
-fs::path Written(const Sweep& sweep, const fs::path& folder) {
+fs::path WrittenTo(const Sweep& sweep, const fs::path& folder) {
   const fs::path path = folder / "box.json";
   std::string error;
   EXPECT_TRUE(WriteSweep(sweep, Summarize(sweep.results), path, &error)) << error;
@@ -52,7 +48,7 @@ std::string JudgePage(const fs::path& page) {
 TEST(SweepReport, IsOnePageWithPercentilesWorstSeedsAndFigures) {
   const fs::path folder = Folder();
   std::string error;
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(1, 200, 1), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(1, 200, 1), folder), &error)) << error;
   EXPECT_EQ(JudgePage(folder / "box.html"), "settling\nrms\nmax\n");
   const std::string page = ReadText(folder / "box.html");
   for (const char* text : {"200 of 200 fleets ok", "200 seeds from 1 to 200", "<td>19.8</td>",
@@ -65,7 +61,7 @@ TEST(SweepReport, IsOnePageWithPercentilesWorstSeedsAndFigures) {
 TEST(SweepReport, FiguresAreSharesOfTheSeeds) {
   const fs::path folder = Folder();
   std::string error;
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(1, 200, 1), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(1, 200, 1), folder), &error)) << error;
   const CsvTable table(folder / "box.report" / "settling.csv");
   const auto& edge_s = table.Column("edge");
   const auto& below = table.Column("below_arm_1");
@@ -84,7 +80,7 @@ TEST(SweepReport, NamesTheSeedsThatAreNotOk) {
   std::vector<SeedResult> results;
   for (uint64_t seed = 1; seed <= 30; ++seed) results.push_back(ResultOf(seed, 0.9, seed % 11 != 0));
   std::string error;
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(results), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(results), folder), &error)) << error;
   const std::string page = ReadText(folder / "box.html");
   for (const char* text :
        {"28 of 30 fleets ok", "2 seeds:", "11 22 ", "armada sim scenarios/paper.toml --seed 11"})
@@ -99,12 +95,12 @@ TEST(SweepReport, SetsTheErrorBesideWhatIsUnavoidable) {
     results.back().floor_rms_mm = results.back().arms[0].floor_rms_mm = 0.5;
   }
   std::string error;
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(results), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(results), folder), &error)) << error;
   const std::string page = ReadText(folder / "box.html");
   for (const char* text :
        {"0.750 mm, 1.50 times the unavoidable 0.500 mm", "<h2>RMS error by the unavoidable one</h2>"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(1, 9, 1), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(1, 9, 1), folder), &error)) << error;
   EXPECT_EQ(ReadText(folder / "box.html").find("unavoidable"), std::string::npos);
 }
 
@@ -112,10 +108,10 @@ TEST(SweepReport, LeavesOutWhatNoSeedHas) {
   const fs::path folder = Folder();
   std::string error;
   ASSERT_TRUE(WriteSweepReport(
-      Written(SweepOf({ResultOf(1, 500.0, false), ResultOf(2, 600.0, false)}), folder), &error))
+      WrittenTo(SweepOf({ResultOf(1, 500.0, false), ResultOf(2, 600.0, false)}), folder), &error))
       << error;
   EXPECT_EQ(JudgePage(folder / "box.html"), "rms\n") << "every arm diverged; the fleets' RMS is of all";
-  ASSERT_TRUE(WriteSweepReport(Written(SweepOf(2, 1, 1), folder), &error)) << error;
+  ASSERT_TRUE(WriteSweepReport(WrittenTo(SweepOf(2, 1, 1), folder), &error)) << error;
   EXPECT_EQ(JudgePage(folder / "box.html"), "\n") << "of no seed at all";
 }
 

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/numbers.h"
+
 namespace armada {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
 constexpr int64_t kWall = 1'700'000'000'000 * kMs;  // wall clock at monotonic zero
 constexpr int64_t kHour = 3'600'000 * kMs;
 

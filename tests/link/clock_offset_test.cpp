@@ -5,10 +5,11 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/numbers.h"
+
 namespace armada {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
 constexpr int64_t kS = 1'000'000'000;
 constexpr double kWire_s = 80e-6;
 

@@ -12,11 +12,10 @@
 #include "tests/link/endpoint_support.h"
 #include "tests/link/private_network_fixture.h"
 #include "tests/support/limit_malloc.h"
+#include "tests/support/numbers.h"
 
 namespace armada {
 namespace {
-
-constexpr int64_t kMs = 1'000'000;
 
 int64_t NowNs() {
   timespec now{};

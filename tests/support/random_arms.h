@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/core/planar_arm.h"
+#include "firmware/core/pseudoinverse.h"
 #include "hil/planar_plant.h"
 #include "hil/random.h"
 
@@ -66,6 +67,11 @@ inline PlanarPlant::Joints ToPlant(const JointVector& values) {
 
 inline JointVector FromPlant(const PlanarPlant& plant, const PlanarPlant::Joints& joints) {
   return Eigen::Map<const Eigen::VectorXd>(joints.data(), plant.dof());
+}
+
+/// The Jacobian's smallest singular value: how far the arm is from a singularity.
+inline double SigmaMin(const PlanarArm& arm, const JointVector& q) {
+  return DampedPseudoinverse({}, arm.Jacobian(arm.At(q))).sigma_min;
 }
 
 }  // namespace armada

@@ -19,12 +19,12 @@
 #include "firmware/link/lcm_endpoint.h"
 #include "hil/hil_server.h"
 #include "hil/scenario_file.h"
+#include "tests/support/numbers.h"
 #include "tests/vcan/vcan_interface.h"
 
 namespace armada {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
 constexpr double kFault_s = 0.5;  // of the fleet's time
 constexpr double kEnd_s = 0.8;
 

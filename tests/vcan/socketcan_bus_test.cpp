@@ -10,13 +10,13 @@
 #include "firmware/clock/monotonic.h"
 #include "tests/can/frames.h"
 #include "tests/support/limit_malloc.h"
+#include "tests/support/numbers.h"
 #include "tests/vcan/vcan_interface.h"
 
 namespace armada {
 namespace {
 
 constexpr int64_t kPoll = 0;  // a deadline long past
-constexpr int64_t kMs = 1'000'000;
 
 int64_t In(int64_t duration_ns) {
   return Now_ns(CLOCK_MONOTONIC) + duration_ns;
