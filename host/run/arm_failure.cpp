@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kTelling_s = 0.1;  // a tick that was late tells of it later
 
-using Json = RunEvidence::Json;
-
 // The last tick at which the arm went to a state in which it does not follow; null: it never did.
 const telemetry_t* StopOf(std::span<const telemetry_t> ticks) {
   const telemetry_t* stop = nullptr;
@@ -82,12 +80,12 @@ bool Misses(const RunEvidence& evidence, MissKind kind, int arm_id) {
 }
 
 // Joints whose drive had lost its power by then, in order.
-std::string DrivesOff(const Json& bench, double until_s) {
+std::string DrivesOff(const RunEvidence::Json& bench, double until_s) {
   std::string text;
   if (!bench.is_object()) return text;
-  const Json& drives = bench.at("drives");
+  const RunEvidence::Json& drives = bench.at("drives");
   for (size_t joint = 0; joint < drives.size(); ++joint) {
-    const Json& off_s = drives[joint].at("off_s");
+    const RunEvidence::Json& off_s = drives[joint].at("off_s");
     if (off_s.is_null() || off_s.get<double>() > until_s) continue;
     text += (text.empty() ? "" : ", ") + ("drive " + std::to_string(joint + 1)) + " off at " +
             TimeText(off_s.get<double>());
@@ -153,7 +151,7 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
 }
 
 std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
-  const Json& board = evidence.arms[index].board;
+  const RunEvidence::Json& board = evidence.arms[index].board;
   if (!board.is_object()) return std::nullopt;
   std::string text;
   const auto add = [&](int64_t count, const std::string& words) {
@@ -170,7 +168,7 @@ std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
   add(count("bus", "can_errors"), "CAN errors");
   add(count("bus", "lcm_overflowed"), "overflowed LCM messages");
   add(count("bus", "lcm_rejected"), "rejected LCM messages");
-  for (const Json& sender : board.at("bus").at("lcm_heard")) {
+  for (const RunEvidence::Json& sender : board.at("bus").at("lcm_heard")) {
     const int from = sender.at("from").get<int>();
     add(sender.at("missed").get<int64_t>(),
         std::string("missed messages of ") +

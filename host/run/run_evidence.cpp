@@ -5,13 +5,11 @@
 namespace armada {
 namespace {
 
-using Json = RunEvidence::Json;
-
 // Null where there is none: a program that was ended has left no report.
-Json ReadIfThere(const std::string& path) {
+RunEvidence::Json ReadIfThere(const std::string& path) {
   std::ifstream file(path);
-  Json json = Json::parse(file, nullptr, false);
-  return json.is_discarded() ? Json() : json;
+  RunEvidence::Json json = RunEvidence::Json::parse(file, nullptr, false);
+  return json.is_discarded() ? RunEvidence::Json() : json;
 }
 
 }  // namespace
@@ -24,11 +22,13 @@ RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_
   evidence.seed = seed;
   evidence.epoch_ns = epoch_ns;
   evidence.hil = ReadIfThere(directory + "/hil.json");
-  const Json benches = evidence.hil.is_object() ? evidence.hil.value("arms", Json::array()) : Json::array();
+  const RunEvidence::Json benches = evidence.hil.is_object()
+                                        ? evidence.hil.value("arms", RunEvidence::Json::array())
+                                        : RunEvidence::Json::array();
   for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
     const std::string file = "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json";
-    evidence.arms.push_back(
-        {recorder.Ticks(i), ReadIfThere(directory + file), i < benches.size() ? benches[i] : Json()});
+    evidence.arms.push_back({recorder.Ticks(i), ReadIfThere(directory + file),
+                             i < benches.size() ? benches[i] : RunEvidence::Json()});
   }
   if (faults != nullptr) evidence.faults_made = faults->made();
   evidence.real_time = heartbeat != nullptr;
