@@ -1,7 +1,8 @@
 #include "host/ablate/ablation.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "host/json.h"
 
 namespace armada {
 namespace {
@@ -65,7 +66,6 @@ std::string Earnings(const AblationResult& with, const AblationResult& without) 
 }
 
 nlohmann::ordered_json ToJson(const Ablation& ablation) {
-  using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const AblationResult& result : ablation.rows) {
     Json row = {{"without", result.row != nullptr ? Json(result.row->component) : Json(nullptr)},

@@ -1,13 +1,10 @@
 #include "host/campaign/trial_result.h"
 
-#include <nlohmann/json.hpp>
-
 #include "host/campaign/judge.h"
+#include "host/json.h"
 #include "host/sim/simulation.h"
 
 namespace armada {
-
-using Json = nlohmann::json;
 
 TrialResult RunTrial(const ScenarioConfig& trial, uint64_t seed) {
   Judge judge(trial);

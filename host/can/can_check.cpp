@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "firmware/can/bus_name.h"
@@ -10,6 +9,7 @@
 #include "firmware/core/named_enum.h"
 #include "host/check/bus_load.h"
 #include "host/check/findings.h"
+#include "host/json.h"
 
 namespace armada {
 namespace {
@@ -136,7 +136,6 @@ void PrintText(const CanCheckResult& result, std::ostream& out) {
 }
 
 void PrintJson(const CanCheckResult& result, std::ostream& out) {
-  using Json = nlohmann::ordered_json;
   Json json = {{"schema", 1}, {"file", result.fleet}, {"ok", result.ok()}};
   json["buses"] = Json::array();
   for (const BusCheck& bus : result.buses) {

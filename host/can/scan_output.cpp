@@ -1,8 +1,9 @@
 #include "host/can/scan_output.h"
 
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "host/json.h"
 
 namespace armada {
 
@@ -21,7 +22,6 @@ void PrintText(const ScanResult& result, std::ostream& out) {
 }
 
 void PrintJson(const ScanResult& result, std::ostream& out) {
-  using Json = nlohmann::ordered_json;
   Json json = {{"schema", 1}, {"heard", result.heard}, {"drives", Json::array()}, {"notes", result.notes}};
   for (const FoundDrive& drive : result.drives) {
     json["drives"].push_back({{"profile", drive.profile},

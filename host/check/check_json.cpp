@@ -1,13 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "host/json.h"
 
 #include "host/check/check_output.h"
 
 namespace armada {
 namespace {
-
-using Json = nlohmann::ordered_json;  // keys in the order of the text
 
 Json ToJson(const TopologyCheck& topology, const std::vector<ArmCheck>& arms) {
   Json depth = Json::object();

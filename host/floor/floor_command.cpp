@@ -2,18 +2,16 @@
 
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "firmware/app/exit_codes.h"
 #include "firmware/app/whole_file.h"
 #include "host/floor/floor.h"
+#include "host/json.h"
 #include "host/metrics.h"
 #include "host/sweep/seed_jobs.h"
 
 namespace armada {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct FloorSweep {
   SeedRange seeds;

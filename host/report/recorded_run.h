@@ -1,16 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "host/json.h"
 #include "host/report/csv_table.h"
 
 namespace armada {
-
-using Json = nlohmann::ordered_json;  // shown in the order it was written in
 
 /// What one arm left behind: its entry in metrics.json and its trace, one row per control tick.
 struct ArmRecord {

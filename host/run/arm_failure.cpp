@@ -80,12 +80,12 @@ bool Misses(const RunEvidence& evidence, MissKind kind, int arm_id) {
 }
 
 // Joints whose drive had lost its power by then, in order.
-std::string DrivesOff(const RunEvidence::Json& bench, double until_s) {
+std::string DrivesOff(const Json& bench, double until_s) {
   std::string text;
   if (!bench.is_object()) return text;
-  const RunEvidence::Json& drives = bench.at("drives");
+  const Json& drives = bench.at("drives");
   for (size_t joint = 0; joint < drives.size(); ++joint) {
-    const RunEvidence::Json& off_s = drives[joint].at("off_s");
+    const Json& off_s = drives[joint].at("off_s");
     if (off_s.is_null() || off_s.get<double>() > until_s) continue;
     text += (text.empty() ? "" : ", ") + ("drive " + std::to_string(joint + 1)) + " off at " +
             TimeText(off_s.get<double>());
@@ -151,7 +151,7 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
 }
 
 std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
-  const RunEvidence::Json& board = evidence.arms[index].board;
+  const Json& board = evidence.arms[index].board;
   if (!board.is_object()) return std::nullopt;
   std::string text;
   const auto add = [&](int64_t count, const std::string& words) {
@@ -168,7 +168,7 @@ std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {
   add(count("bus", "can_errors"), "CAN errors");
   add(count("bus", "lcm_overflowed"), "overflowed LCM messages");
   add(count("bus", "lcm_rejected"), "rejected LCM messages");
-  for (const RunEvidence::Json& sender : board.at("bus").at("lcm_heard")) {
+  for (const Json& sender : board.at("bus").at("lcm_heard")) {
     const int from = sender.at("from").get<int>();
     add(sender.at("missed").get<int64_t>(),
         std::string("missed messages of ") +

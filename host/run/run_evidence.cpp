@@ -6,10 +6,10 @@ namespace armada {
 namespace {
 
 // Null where there is none: a program that was ended has left no report.
-RunEvidence::Json ReadIfThere(const std::string& path) {
+Json ReadIfThere(const std::string& path) {
   std::ifstream file(path);
-  RunEvidence::Json json = RunEvidence::Json::parse(file, nullptr, false);
-  return json.is_discarded() ? RunEvidence::Json() : json;
+  Json json = Json::parse(file, nullptr, false);
+  return json.is_discarded() ? Json() : json;
 }
 
 }  // namespace
@@ -22,13 +22,11 @@ RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_
   evidence.seed = seed;
   evidence.epoch_ns = epoch_ns;
   evidence.hil = ReadIfThere(directory + "/hil.json");
-  const RunEvidence::Json benches = evidence.hil.is_object()
-                                        ? evidence.hil.value("arms", RunEvidence::Json::array())
-                                        : RunEvidence::Json::array();
+  const Json benches = evidence.hil.is_object() ? evidence.hil.value("arms", Json::array()) : Json::array();
   for (size_t i = 0; i < scenario.fleet.arms.size(); ++i) {
     const std::string file = "/arm_" + std::to_string(scenario.fleet.arms[i].id) + ".json";
-    evidence.arms.push_back({recorder.Ticks(i), ReadIfThere(directory + file),
-                             i < benches.size() ? benches[i] : RunEvidence::Json()});
+    evidence.arms.push_back(
+        {recorder.Ticks(i), ReadIfThere(directory + file), i < benches.size() ? benches[i] : Json()});
   }
   if (faults != nullptr) evidence.faults_made = faults->made();
   evidence.real_time = heartbeat != nullptr;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "firmware/link/messages.h"
 #include "hil/scenario.h"
+#include "host/json.h"
 #include "host/metrics.h"
 #include "host/run/heartbeat.h"
 #include "host/run/process_faults.h"
@@ -18,8 +18,6 @@ namespace armada {
 
 /// What is known of a run when it is over: what a diagnosis is made of.
 struct RunEvidence {
-  using Json = nlohmann::ordered_json;
-
   /// Of one arm, in the order of the fleet.
   struct Arm {
     std::span<const telemetry_t> ticks;  ///< that were heard

@@ -2,14 +2,13 @@
 
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
+#include "host/json.h"
+
 namespace armada {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::optional<Json> ReadJson(const std::string& path, std::string* error) {
   std::ifstream file(path);

@@ -1,10 +1,8 @@
 #include "host/sweep/seed_result.h"
 
-#include <nlohmann/json.hpp>
+#include "host/json.h"
 
 namespace armada {
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 

@@ -2,15 +2,14 @@
 
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "host/json.h"
 
 #include "host/sweep/sweep_result.h"
 
 namespace armada {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The whole file but for its runs, of which each is handed to `on_run`.
 Json Parse(const std::string& path, const std::function<void(const Json& run)>& on_run) {

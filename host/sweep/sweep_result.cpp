@@ -1,14 +1,11 @@
 #include "host/sweep/sweep_result.h"
 
-#include <nlohmann/json.hpp>
-
 #include "firmware/app/whole_file.h"
+#include "host/json.h"
 #include "host/shell_quote.h"
 
 namespace armada {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json ToJson(const Sweep& sweep, const WorstSeeds& worst) {
   Json list = Json::array();
