@@ -106,14 +106,14 @@ std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<S
 std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
   std::vector<RunFinding> findings;
   bool has_priority = true;
-  const auto look = [&](const RunEvidence::Json& program) {
+  const auto look = [&](const Json& program) {
     if (program.is_object() && !program.at("timing").at("realtime_priority").get<bool>())
       has_priority = false;
   };
   look(evidence.hil);
   for (const RunEvidence::Arm& arm : evidence.arms) look(arm.board);
   if (evidence.hil.is_object()) {
-    const RunEvidence::Json& timing = evidence.hil.at("timing");
+    const Json& timing = evidence.hil.at("timing");
     const double late_s = 1e-6 * timing.at("pacing_us").at("max").get<double>();
     const double at_s = timing.at("latest_at_s").get<double>();
     if (late_s >= TolerableLateness_s(evidence.scenario->fleet.timing)) {

@@ -78,7 +78,7 @@ class DiagnosisTest : public testing::Test {
   ScenarioConfig scenario_;
   RunMetrics metrics_;
   std::vector<std::vector<telemetry_t>> ticks_;
-  std::array<RunEvidence::Json, 2> boards_, benches_;
+  std::array<Json, 2> boards_, benches_;
   RunEvidence evidence_;
 };
 
