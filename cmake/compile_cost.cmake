@@ -1,18 +1,26 @@
 # What compiling costs: how far code is optimised, and which headers come precompiled. docs/development.md has figures.
 #
-#   armada_hot_code(TARGET...)   what runs in every tick of a board, of an emulation or of a simulation
-#   armada_cold_code(TARGET...)  what runs once or for people: configuration, command lines, reports, checks, tests
-#   armada_in_batches(TARGET...) sources are compiled a few at a time, as one
+#   armada_code(hot TARGET...)    what runs in every tick of a board, of an emulation or of a simulation
+#   armada_code(warm TARGET...)   what runs long in tests or fuzzers only: tests that calculate, judges, configuration
+#   armada_code(cold TARGET...)   what runs once or for people: command lines, reports, other tests
+#   armada_in_batches(TARGET...)  sources are compiled a few at a time, as one
 
 option(ARMADA_PCH "Precompile headers that are not ours" ON)
 option(ARMADA_BATCHES "Compile several sources at once, where a target says so" ON)
 
-# Boards and sweeps spend no time in cold code.
-add_library(armada_cold INTERFACE)
-target_compile_options(armada_cold INTERFACE $<$<CONFIG:Release>:-O1>)
+# Boards and sweeps spend no time in warm and in cold code. A build with sanitizers is for finding defects: there cold code
+# is compiled as fast as can be.
+add_library(armada_hot INTERFACE)
+add_library(armada_warm INTERFACE)
+target_compile_options(armada_warm INTERFACE $<$<CONFIG:Release>:-O1>)
 # At -O1 GCC 12 sees overlaps and overflows in std::string's operator+ that are not there (its bugs 105329, 105651).
-target_compile_options(armada_cold INTERFACE
+target_compile_options(armada_warm INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>)
+add_library(armada_cold INTERFACE)
+target_link_libraries(armada_cold INTERFACE armada_warm)
+if(ARMADA_SANITIZE)
+  target_compile_options(armada_cold INTERFACE -O0)
+endif()
 
 # Our own headers change too often, and a source must name what it uses. GCC 12 instantiates what a precompiled header
 # has left open in every source anew: with Eigen, GoogleTest, nlohmann/json or CLI11 in it, it becomes slower. Clang
@@ -23,28 +31,19 @@ set(armada_precompiled
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   list(APPEND armada_precompiled <Eigen/Core>)
 endif()
-foreach(kind hot cold)
+foreach(kind hot warm cold)
   add_library(armada_${kind}_headers OBJECT ${CMAKE_CURRENT_LIST_DIR}/headers.cpp)
-  target_link_libraries(armada_${kind}_headers PRIVATE armada_options)
+  target_link_libraries(armada_${kind}_headers PRIVATE armada_options armada_${kind})
   if(ARMADA_PCH)
     target_precompile_headers(armada_${kind}_headers PRIVATE ${armada_precompiled})
   endif()
 endforeach()
-target_link_libraries(armada_cold_headers PRIVATE armada_cold)
 
-function(armada_hot_code)
-  if(ARMADA_PCH)
-    foreach(target IN LISTS ARGN)
-      target_precompile_headers(${target} REUSE_FROM armada_hot_headers)
-    endforeach()
-  endif()
-endfunction()
-
-function(armada_cold_code)
+function(armada_code kind)
   foreach(target IN LISTS ARGN)
-    target_link_libraries(${target} PRIVATE armada_cold)
+    target_link_libraries(${target} PRIVATE armada_${kind})
     if(ARMADA_PCH)
-      target_precompile_headers(${target} REUSE_FROM armada_cold_headers)
+      target_precompile_headers(${target} REUSE_FROM armada_${kind}_headers)
     endif()
   endforeach()
 endfunction()

@@ -6,6 +6,7 @@
 #include "firmware/app/config/fleet_file.h"
 #include "firmware/app/initial_state.h"
 #include "tests/fuzz/byte_source.h"
+#include "tests/fuzz/input_key.h"
 #include "tests/fuzz/link_actions.h"
 #include "tests/fuzz/require.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr int64_t kEpochNs = 1'000'000'000;
 constexpr int64_t kPeriodNs = 10'000'000;
-constexpr FleetKey kKey = {1};
 constexpr FleetKey kStrangersKey = {2};
 constexpr const char* kChannels[] = {"LEADER", "EST_1", "EST_2", "TEL_1", "CMD"};
 
@@ -39,11 +39,12 @@ struct Sent {
 /// estimate stays a number.
 class LinkWorld {
  public:
-  LinkWorld()
-      : node_(Fleet(), Listener(), NominalInitialState(Fleet().arms[Listener()]), kEpochNs,
-              {StartMode::kMonitor, 0, LinkIdentity{kKey, 1}}),
-        leader_({kKey, 1}, kLeaderSender),
-        arm_({kKey, 1}, kOther),
+  explicit LinkWorld(const FleetKey& key)
+      : key_(key),
+        node_(Fleet(), Listener(), NominalInitialState(Fleet().arms[Listener()]), kEpochNs,
+              {StartMode::kMonitor, 0, LinkIdentity{key, 1}}),
+        leader_({key, 1}, kLeaderSender),
+        arm_({key, 1}, kOther),
         stranger_({kStrangersKey, 9}, kLeaderSender) {}
 
   void Do(LinkAction action, ByteSource* choices) {
@@ -73,7 +74,7 @@ class LinkWorld {
       case LinkAction::kJunk:
         return Junk(choices);
       case LinkAction::kRestart:
-        leader_ = Sealer({kKey, ++leader_epoch_}, kLeaderSender);
+        leader_ = Sealer({key_, ++leader_epoch_}, kLeaderSender);
         leader_sequence_ = 0;
         leader_clock_ns_ = now_ns_ - kEpochNs;
         return;
@@ -161,6 +162,7 @@ class LinkWorld {
             "its own estimate is valid and sealed");
   }
 
+  FleetKey key_;
   int64_t now_ns_ = kEpochNs;
   int64_t leader_clock_ns_ = 0;
   uint64_t leader_epoch_ = 1;
@@ -170,7 +172,7 @@ class LinkWorld {
   MessageBuffer buffer_{};
   ArmNode node_;
   Sealer leader_, arm_, stranger_;
-  SealCheck check_{kKey, 2};
+  SealCheck check_{key_, 2};
   std::vector<Sent> past_;
 };
 
@@ -181,7 +183,7 @@ class LinkWorld {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace armada;
   ByteSource choices({data, size});
-  LinkWorld world;
+  LinkWorld world(KeyOf({data, size}));
   while (!choices.empty()) {
     world.Do(static_cast<LinkAction>(choices.Byte() % static_cast<int>(LinkAction::kCount)), &choices);
   }

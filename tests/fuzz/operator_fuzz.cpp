@@ -7,6 +7,7 @@
 #include "hil/emulated_arm.h"
 #include "hil/scenario_file.h"
 #include "tests/fuzz/byte_source.h"
+#include "tests/fuzz/input_key.h"
 #include "tests/fuzz/operator_actions.h"
 #include "tests/fuzz/require.h"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr int64_t kEpochNs = 1'000'000'000;
 constexpr int64_t kPeriodNs = 10'000'000;
 constexpr double kPeriod_s = 0.01;
-constexpr FleetKey kKey = {1};
 constexpr FleetKey kStrangersKey = {2};
 // Drives that hear nothing trip their watchdogs after 30 ms.
 constexpr int kTicksToRest = 10;
@@ -56,15 +56,17 @@ Request NeededFor(ControllerState from, ControllerState to) {
 /// A board with its drives, the leader, its operator, and strangers who know all that was sent.
 class OperatedBoard {
  public:
-  OperatedBoard()
+  explicit OperatedBoard(const FleetKey& key)
       : leader_path_(Scenario().leader),
         start_(DrawStart(Scenario(), 0, 1, &leader_path_)),
         bench_(Scenario(), 0, 1, start_, &leader_path_, -1.0),
         node_(Scenario().fleet, 0, start_.controller, kEpochNs,
-              {StartMode::kMonitor, kDigest, LinkIdentity{kKey, 1}}),
-        leader_({kKey, 1}, kLeaderSender),
-        operator_({kKey, 1}, kOperatorSender),
-        stranger_({kStrangersKey, 9}, kOperatorSender) {}
+              {StartMode::kMonitor, kDigest, LinkIdentity{key, 1}}),
+        leader_({key, 1}, kLeaderSender),
+        operator_({key, 1}, kOperatorSender),
+        stranger_({kStrangersKey, 9}, kOperatorSender),
+        estimates_(key, 1),
+        replies_(key, 1) {}
 
   void Do(OperatorAction action, ByteSource* choices) {
     switch (action) {
@@ -245,8 +247,8 @@ class OperatedBoard {
   MessageBuffer buffer_{};
   ArmNode node_;
   Sealer leader_, operator_, stranger_;
-  SealCheck estimates_{kKey, 1};
-  SealCheck replies_{kKey, 1};
+  SealCheck estimates_;
+  SealCheck replies_;
   FrameList to_drives_, to_board_;
   std::vector<Bytes> past_;
   std::vector<Asked> asked_;
@@ -266,7 +268,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace armada;
   constexpr int kMostActions = 60;
   ByteSource choices({data, size});
-  OperatedBoard board;
+  OperatedBoard board(KeyOf({data, size}));
   for (int i = 0; i < kMostActions && !choices.empty(); ++i) {
     board.Do(static_cast<OperatorAction>(choices.Byte() % static_cast<int>(OperatorAction::kCount)),
              &choices);

@@ -4,12 +4,12 @@
 
 #include "firmware/link/seal.h"
 #include "tests/fuzz/byte_source.h"
+#include "tests/fuzz/input_key.h"
 #include "tests/fuzz/require.h"
 
 namespace armada {
 namespace {
 
-constexpr FleetKey kKey = {1};
 constexpr int kSender = 3;
 constexpr const char* kChannels[] = {"EST_3", "TEL_3", "ACK_3", "EST_30", "EST_", "CMD"};
 
@@ -23,6 +23,8 @@ struct Sent {
 /// One sender's seals, and a receiver that gets them, and what others make of them, in any order.
 class Envelopes {
  public:
+  explicit Envelopes(const FleetKey& key) : key_(key) {}
+
   /// What an input tells to do: a byte, then the bytes that the action reads.
   void Do(ByteSource* choices) {
     switch (choices->Byte() % 7) {
@@ -63,7 +65,7 @@ class Envelopes {
   Sent Newest() const { return sent_.empty() ? Sent{kChannels[0], {}} : sent_.back(); }
 
   void Seal(ByteSource* choices) {
-    if (choices->Byte() % 8 == 0) sealer_ = Sealer({kKey, ++epoch_}, kSender);
+    if (choices->Byte() % 8 == 0) sealer_ = Sealer({key_, ++epoch_}, kSender);
     const char* const channel = kChannels[choices->Byte() % std::size(kChannels)];
     MessageBuffer buffer;
     const size_t size = choices->Byte();
@@ -85,9 +87,10 @@ class Envelopes {
     if (expected == SealVerdict::kGenuine) next_ = sealed - sent_.begin() + 1;
   }
 
+  FleetKey key_;
   uint64_t epoch_ = 1;
-  Sealer sealer_{{kKey, 1}, kSender};
-  SealCheck check_{kKey, kSender};
+  Sealer sealer_{{key_, 1}, kSender};
+  SealCheck check_{key_, kSender};
   std::vector<Sent> sent_;
   std::ptrdiff_t next_ = 0;  ///< the first of them that is newer than all that were taken
 };
@@ -99,7 +102,7 @@ class Envelopes {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace armada;
   ByteSource choices({data, size});
-  Envelopes envelopes;
+  Envelopes envelopes(KeyOf({data, size}));
   while (!choices.empty()) envelopes.Do(&choices);
   return 0;
 }

@@ -8,30 +8,30 @@ cat >"$work/inside" <<'END'
 names() { ip -o link | cut -d : -f 2 | xargs; }
 gone() { # within 5 s
   for _ in $(seq 500); do
-    [ "$(names)" = 'lo vcan3' ] && return
+    [ "$(names)" = 'lo can2' ] && return
     read -rt 0.01 <> <(:) || :
   done
   echo "left behind: $(names)"
   exit 1
 }
-ip link add dev vcan3 type vcan && ip link set dev vcan3 mtu 72 up
+ip link add dev can2 type vcan && ip link set dev can2 mtu 72 up
 for end in INT TERM KILL; do
   rm -rf "$1/ended"
-  "$2/armada" run "$3/hil/scenarios/benign.toml" --seconds 60 --bus socketcan --out "$1/ended" >"$1/said" 2>&1 &
+  "$2/armada" run "$3/hil/scenarios/two_arms.toml" --seconds 60 --bus socketcan --out "$1/ended" >"$1/said" 2>&1 &
   run=$!
-  until [ -d /sys/class/net/vcan7 ] && grep -qs 'on, seed' "$1/ended/hil.txt"; do read -rt 0.01 <> <(:) || :; done
+  until [ -d /sys/class/net/can0 ] && grep -qs 'on, seed' "$1/ended/hil.txt"; do read -rt 0.01 <> <(:) || :; done
   kill -$end $run
   wait $run
   echo "$end: $?"
   gone
 done
 rm -rf "$1/ended"
-"$2/armada" run "$3/hil/scenarios/benign.toml" --seconds 0.2 --set window_start_s=0.1 --bus socketcan --out "$1/ended" \
+"$2/armada" run "$3/hil/scenarios/two_arms.toml" --seconds 0.2 --set window_start_s=0.1 --bus socketcan --out "$1/ended" \
   >"$1/said" 2>&1
 gone
-grep 'used as they are: vcan3$' "$1/said"
+grep 'used as they are: can2$' "$1/said"
 rm -rf "$1/ended"
-"$2/armada" run "$3/hil/scenarios/benign.toml" --seconds 60 --bus socketcan --namespaces --out "$1/ended" >"$1/said" 2>&1 &
+"$2/armada" run "$3/hil/scenarios/two_arms.toml" --seconds 60 --bus socketcan --namespaces --out "$1/ended" >"$1/said" 2>&1 &
 run=$!
 until grep -qs 'on, seed' "$1/ended/hil.txt"; do read -rt 0.01 <> <(:) || :; done
 kill -KILL $run
@@ -40,7 +40,7 @@ gone
 END
 "$vm" -o "$work/shared" -- bash "$work/inside" "$work/shared" "$bin" "$source" >"$work/out" 2>&1 ||
   fail "ends of runs: $(cat "$work/out" "$work/shared/said")"
-for line in 'INT: 130' 'TERM: 130' 'KILL: 137' 'used as they are: vcan3'; do
+for line in 'INT: 130' 'TERM: 130' 'KILL: 137' 'used as they are: can2'; do
   grep -q "$line" "$work/out" || fail "ends of runs: no '$line' in: $(cat "$work/out")"
 done
 

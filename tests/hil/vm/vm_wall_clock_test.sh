@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 steps='
 step() { read -rt "$1" <> <(:) || :; busybox date -s "@$(($(busybox date +%s) + $2))" >/dev/null; }
 (step 3.7 3600; step 0.6 -3600; busybox date >out/stepped) &
-armada run hil/scenarios/benign.toml --seconds 4 --set window_start_s=1.5 --bus socketcan --out out/run
+armada run hil/scenarios/two_arms.toml --seconds 4 --set window_start_s=1.5 --bus socketcan --out out/run
 status=$?
 wait
 exit $status'
