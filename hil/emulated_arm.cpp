@@ -8,11 +8,6 @@
 #include "hil/same_instant.h"
 
 namespace armada {
-namespace {
-
-// Events closer together than this are one: below it, differences of times are rounding.
-
-}  // namespace
 
 EmulatedArm::EmulatedArm(const ScenarioConfig& scenario, size_t index, uint64_t seed, const ArmStart& start,
                          const LeaderPath* leader, double start_s)

@@ -9,8 +9,6 @@
 namespace armada {
 namespace {
 
-// Instants closer together than this are one: the run's time is a sum of others.
-
 bool IsOfWire(FaultKind kind) {
   return kind == FaultKind::kBusLoss || kind == FaultKind::kBusDelay || kind == FaultKind::kBusOff ||
          kind == FaultKind::kBusDown;

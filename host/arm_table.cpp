@@ -7,6 +7,7 @@
 #include "host/number_format.h"
 
 namespace armada {
+
 void PrintArmTable(const RunMetrics& metrics, std::ostream& out) {
   char line[240];
   const bool floor = metrics.floor_rms_m.has_value();

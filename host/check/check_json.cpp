@@ -1,9 +1,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "host/json.h"
-
 #include "host/check/check_output.h"
+#include "host/json.h"
 
 namespace armada {
 namespace {

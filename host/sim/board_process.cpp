@@ -6,11 +6,6 @@
 #include "hil/same_instant.h"
 
 namespace armada {
-namespace {
-
-// Instants closer together than this are one.
-
-}  // namespace
 
 BoardProcess::BoardProcess(const ScenarioConfig& scenario, int arm_id)
     : timing_(scenario.fleet.timing), faults_(scenario.faults, arm_id) {}

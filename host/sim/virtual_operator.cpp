@@ -3,11 +3,6 @@
 #include "hil/same_instant.h"
 
 namespace armada {
-namespace {
-
-// Times closer together than this are one.
-
-}  // namespace
 
 VirtualOperator::VirtualOperator(const ScenarioConfig& scenario, int64_t fleet_digest,
                                  const std::optional<LinkIdentity>& identity)

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "host/json.h"
-
 #include "host/sweep/sweep_result.h"
 
 namespace armada {

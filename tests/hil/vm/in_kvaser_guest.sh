@@ -6,7 +6,7 @@ for interface in can0 can1 can2 can3; do
   ip link set dev "$interface" up type can bitrate 1000000
 done
 status=0
-armada run hil/scenarios/two_arms.toml --seconds 3 --set window_start_s=2.0 --bus socketcan \
+armada run hil/scenarios/two_arms.toml --seconds 6 --set window_start_s=4.0 --bus socketcan \
   --hil-bus 1=socketcan:can1 --hil-bus 2=socketcan:can3 --out out/run || status=$?
 ip -details -statistics -json link show type can >out/interfaces.json
 exit "$status"

@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 
 # A whole run; then one with each board in a namespace, with drives on CAN FD.
 whole_run() {
-  "$bin/armada" run "$source/hil/scenarios/benign.toml" --seconds 1 --set window_start_s=0.7 --bus vm "$@" \
+  "$bin/armada" run "$source/hil/scenarios/benign.toml" --seconds 3 --set window_start_s=2.0 --bus vm "$@" \
     --out "$work/run" --json "$work/copy.json" >"$work/out" 2>&1 || fail "run --bus vm $*: $(cat "$work/out")"
   cmp "$work/run/metrics.json" "$work/copy.json" || fail "--json of a run in the virtual machine"
   /usr/bin/python3 - "$work/run/metrics.json" <<'PY' || fail "metrics of run --bus vm $*"
