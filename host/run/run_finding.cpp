@@ -4,17 +4,17 @@
 #include <cstdio>
 #include <ostream>
 
+#include "host/json.h"
+
 namespace armada {
 
-nlohmann::ordered_json ToJson(const std::vector<RunFinding>& findings) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+Json ToJson(const std::vector<RunFinding>& findings) {
+  Json json = Json::array();
   for (const RunFinding& finding : findings) {
-    json.push_back(
-        {{"kind", finding.kind},
-         {"arm",
-          finding.arm_id == 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(finding.arm_id)},
-         {"at_s", finding.at_s ? nlohmann::ordered_json(*finding.at_s) : nlohmann::ordered_json(nullptr)},
-         {"text", finding.text}});
+    json.push_back({{"kind", finding.kind},
+                    {"arm", finding.arm_id == 0 ? Json(nullptr) : Json(finding.arm_id)},
+                    {"at_s", finding.at_s ? Json(*finding.at_s) : Json(nullptr)},
+                    {"text", finding.text}});
   }
   return json;
 }

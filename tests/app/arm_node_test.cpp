@@ -7,13 +7,12 @@
 #include "firmware/link/channels.h"
 #include "hil/emulated_arm.h"
 #include "hil/scenario_file.h"
+#include "tests/app/board_times.h"
 #include "tests/support/limit_malloc.h"
 
 namespace armada {
 namespace {
 
-constexpr int64_t kEpochNs = 1'000'000'000;
-constexpr int64_t kPeriodNs = 10'000'000;
 constexpr uint32_t kEncoderEstimatesOfNode1 = 0x029;
 
 ScenarioConfig PaperScenario() {

@@ -6,14 +6,12 @@
 #include "firmware/app/config/fleet_file.h"
 #include "hil/emulated_arm.h"
 #include "hil/scenario_file.h"
+#include "tests/app/board_times.h"
 
 namespace armada {
 namespace {
 
 using State = ControllerState;
-
-constexpr int64_t kStartNs = 1'000'000'000;
-constexpr int64_t kTickNs = 10'000'000;
 
 ScenarioConfig ScenarioWith(const std::string& drive) {
   std::vector<ConfigError> errors;
@@ -39,15 +37,15 @@ class Operated : public testing::TestWithParam<const char*> {
 
   /// A new board: nothing is known of an earlier one.
   void SwitchOn() {
-    node_.emplace(scenario_.fleet, 0, start_.controller, kStartNs,
+    node_.emplace(scenario_.fleet, 0, start_.controller, kEpochNs,
                   BoardStart{StartMode::kMonitor, digest_, std::nullopt});
   }
   double TimeOf(int64_t k) const { return 0.01 * static_cast<double>(k); }
-  int64_t NanosecondsOf(int64_t k) const { return kStartNs + k * kTickNs; }
+  int64_t NanosecondsOf(int64_t k) const { return kEpochNs + k * kPeriodNs; }
 
   void HandOver(double t_s) {
     for (CanFrame frame : to_board_) {
-      frame.stamp_ns = kStartNs + std::llround(t_s * 1e9);
+      frame.stamp_ns = kEpochNs + std::llround(t_s * 1e9);
       node_->OnFrame(frame);
     }
     to_board_.Clear();
