@@ -6,10 +6,11 @@ usage: cached_clang_tidy.py CACHE_DIR BUILD_DIR...
 Each BUILD_DIR is an up-to-date Ninja build with compile_commands.json; a source is checked as the first build that has
 it compiles it, alone or in a batch of CMake's, but without the compiler's precompiled headers.
 
-Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources with the same
-flags are checked in batches, as one translation unit. A batch that passes shows that each of its sources would: no check
-of ours is silenced by other code but misc-unused-using-decls, and that one is run on each source alone. A batch that does
-not pass, or does not compile as one, is halved, so that what is reported comes from a source alone.
+Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources are checked in
+batches, as one translation unit: those with the same flags, but for optimisation, folders of headers and macros that do
+not contradict each other. A batch that passes shows that each of its sources would: no check of ours is silenced by other
+code but misc-unused-using-decls, and that one is run on each source alone. A batch that does not pass, or does not
+compile as one, is halved, so that what is reported comes from a source alone.
 
 A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: its compile
 command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read
@@ -29,8 +30,11 @@ import sys
 import threading
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BATCH = 16  # sources
+BATCH = 48  # sources
 PER_SOURCE_CHECK = "misc-unused-using-decls"
+# In a batch a name at the file scope of one source hides another's local one; the compilers check each source for that.
+BATCH_OPTIONS = ["-Wno-shadow"]
+ENTRY = "LLVMFuzzerTestOneInput"  # each fuzzer has one, in a batch each has another name
 PRECOMPILED = re.compile(r" (-Winvalid-pch|-fpch-instantiate-templates|-Xclang -emit-pch|"
                          r"(-Xclang )?-include(-pch)?( -Xclang)? \S*cmake_pch\S*)(?= )")
 
@@ -78,21 +82,63 @@ def digest(path):
 
 def names_at_file_scope(source):
     """Roughly what the source declares there: two sources of one batch must not declare the same."""
-    return set(DECLARED.findall(source.read_text())) | set(USED.findall(source.read_text()))
+    text = source.read_text()
+    return (set(DECLARED.findall(text)) | set(USED.findall(text))) - {ENTRY}
+
+
+class Batch:
+    """Sources that can be checked as one."""
+
+    def __init__(self, kind):
+        self.kind = kind
+        self.sources = []
+        self.names = set()
+        self.macros = {}
+        self.folders = {}  # in order
+
+    @property
+    def flags(self):
+        return [*self.kind, *(f"-D{name}{value}" for name, value in self.macros.items()), *self.folders]
+
+    def takes(self, kind, names, macros):
+        return (kind == self.kind and len(self.sources) < BATCH and not names & self.names and
+                all(self.macros.get(name, value) == value for name, value in macros.items()))
+
+    def add(self, source, names, macros, folders):
+        self.sources.append(source)
+        self.names |= names
+        self.macros |= macros
+        self.folders |= dict.fromkeys(folders)
+
+
+def parts_of(flags):
+    """Flags that sources of a batch must share, macros with their values, folders of headers."""
+    kind, macros, folders = [], {}, []
+    rest = iter(flags)
+    for flag in rest:
+        if flag.startswith("-D"):
+            name = re.match(r"-D(\w+)", flag)[1]
+            macros[name] = flag[2 + len(name):]
+        elif flag in ("-isystem", "-I"):
+            folders.append("-isystem" + next(rest) if flag == "-isystem" else "-I" + next(rest))
+        elif flag.startswith("-I"):
+            folders.append(flag)
+        elif not flag.startswith("-O"):
+            kind.append(flag)
+    return tuple(kind), macros, folders
 
 
 def in_batches(sources, flags):
-    batches = []  # of flags, names and sources
+    batches = []
     for source in sources:
+        kind, macros, folders = parts_of(flags[source])
         names = names_at_file_scope(source)
-        for batch in batches:
-            if batch[0] == flags[source] and len(batch[2]) < BATCH and not names & batch[1]:
-                batch[1].update(names)
-                batch[2].append(source)
-                break
-        else:
-            batches.append((flags[source], names, [source]))
-    return sorted((batch[2] for batch in batches), key=len, reverse=True)  # the long ones first
+        batch = next((batch for batch in batches if batch.takes(kind, names, macros)), None)
+        if not batch:
+            batch = Batch(kind)
+            batches.append(batch)
+        batch.add(source, names, macros, folders)
+    return sorted(batches, key=lambda batch: len(batch.sources), reverse=True)  # the long ones first
 
 
 def main():
@@ -108,8 +154,8 @@ def main():
         parts = [version, *flags[source]] + [f"{path} {digest(path)}" for path in inputs]
         return cache / hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
-    def tidy(file, source, *options):
-        return subprocess.run(["clang-tidy", "--quiet", *options, file, "--", *flags[source]],
+    def tidy(file, flags_of_file, *options):
+        return subprocess.run(["clang-tidy", "--quiet", *options, file, "--", *flags_of_file],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 
     markers = {source: passed_marker(source) for source in flags}
@@ -118,26 +164,30 @@ def main():
     done = 0
     lock = threading.Lock()
 
-    def batch_passes(batch):
+    def pass_as_one(batch, flags_of_batch):
         """Whether all of the sources as one pass all checks but PER_SOURCE_CHECK."""
+        # What replaces functions of C comes after all that includes their headers.
+        batch = sorted(batch, key=lambda source: 'extern "C"' in source.read_text())
         unit = cache / f"batch_{hashlib.sha256(str(batch).encode()).hexdigest()}.cpp"
-        unit.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in batch))
+        unit.write_text("".join(f"#define {ENTRY} {ENTRY}{place}\n"
+                                f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n'
+                                f"#undef {ENTRY}\n" for place, source in enumerate(batch)))
         try:
-            return tidy(unit, batch[0], f"--checks=-{PER_SOURCE_CHECK}").returncode == 0
+            return tidy(unit, [*flags_of_batch, *BATCH_OPTIONS], f"--checks=-{PER_SOURCE_CHECK}").returncode == 0
         finally:
             unit.unlink()
 
-    def check(batch):
+    def check(batch, flags_of_batch):
         """The number of sources with findings."""
         nonlocal done
         if len(batch) == 1:
-            results = [tidy(batch[0], batch[0])]
-        elif batch_passes(batch):
-            results = [tidy(source, source, f"--checks=-*,{PER_SOURCE_CHECK}") if source in alone else None
+            results = [tidy(batch[0], flags[batch[0]])]
+        elif pass_as_one(batch, flags_of_batch):
+            results = [tidy(source, flags[source], f"--checks=-*,{PER_SOURCE_CHECK}") if source in alone else None
                        for source in batch]
         else:
             middle = len(batch) // 2
-            return check(batch[:middle]) + check(batch[middle:])
+            return check(batch[:middle], flags_of_batch) + check(batch[middle:], flags_of_batch)
         findings = 0
         with lock:
             for source, result in zip(batch, results):
@@ -152,7 +202,7 @@ def main():
         return findings
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        findings = sum(pool.map(check, in_batches(changed, flags)))
+        findings = sum(pool.map(lambda batch: check(batch.sources, batch.flags), in_batches(changed, flags)))
     print(f"{len(flags)} files, {len(changed)} checked, the others unchanged")
     return 1 if findings else 0
 

@@ -9,10 +9,11 @@
 #include <cstdio>
 #include <cstring>
 
+#include "firmware/clock/monotonic.h"
+
 namespace armada {
 namespace {
 
-constexpr int64_t kNsPerS = 1'000'000'000;
 constexpr size_t kTextBytes = size_t{64} * 1024;
 constexpr std::chrono::milliseconds kWritePeriod{50};
 constexpr int kWriterNice = 10;

@@ -14,11 +14,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Bounds on |x_hat - x_0|, and of v, a and jerk, on any axis.
-using Errors = std::array<double, 4>;
+using Deviations = std::array<double, 4>;
 
 /// What one node knows, and tells.
 struct Node {
-  Errors error{};
+  Deviations error{};
   double leader_age_s = kInfinity;
 };
 
@@ -59,7 +59,7 @@ class BoundRecursion {
   }
 
   EstimateBound Of(size_t arm) const {
-    const Errors& error = arms_[arm].error;
+    const Deviations& error = arms_[arm].error;
     return {error[0], error[1], error[2]};
   }
 
@@ -92,7 +92,7 @@ class BoundRecursion {
         if (link.sender == 0) {
           const double rate_hz = scenario_.leader.rate_hz;  // the newest state on the leader's own grid
           link.stamp_s = std::floor(t_s * rate_hz + 1e-6) / rate_hz;
-          link.message = {Errors{}, 0.0};
+          link.message = {Deviations{}, 0.0};
         } else {
           link.stamp_s = t_s;
           link.message = sent_[static_cast<size_t>(sent_at) % sent_.size()][link.sender - 1];
@@ -118,11 +118,11 @@ class BoundRecursion {
     for (const Link& link : arm->links) {
       if (CountsAsHeard(link, t_s, topology)) youngest_s = std::min(youngest_s, LeaderAge(link, t_s));
     }
-    Errors sum{};
+    Deviations sum{};
     double degree = 0.0;
     for (const Link& link : arm->links) {
       if (!CountsAsHeard(link, t_s, topology) || LeaderAge(link, t_s) > youngest_s + 0.5 * h_s_) continue;
-      const Errors z = Ahead(Outdated(link.message.error), AgeOf(link, t_s) + h_s_);
+      const Deviations z = Ahead(Outdated(link.message.error), AgeOf(link, t_s) + h_s_);
       for (size_t c = 0; c < z.size(); ++c) sum[c] += link.weight[topology] * z[c];
       degree += link.weight[topology];
     }
@@ -131,12 +131,12 @@ class BoundRecursion {
   }
 
   // The estimate lands on the mean, or between it and the own prediction, which it left by beta.
-  void Correct(const Errors& sum, double degree, Arm* arm) const {
-    const Errors f = AheadWithoutJerk(arm->error, h_s_);
+  void Correct(const Deviations& sum, double degree, Arm* arm) const {
+    const Deviations f = AheadWithoutJerk(arm->error, h_s_);
     const double since_s = h_s_ + (arm->coasted_s <= estimator_.age_max_s ? arm->coasted_s : 0.0);
     // The jerk is the mean's.
-    const Errors moved = {since_s * estimator_.beta_1_m_s, since_s * estimator_.beta_2_m_s2,
-                          since_s * estimator_.beta_3_m_s3, kInfinity};
+    const Deviations moved = {since_s * estimator_.beta_1_m_s, since_s * estimator_.beta_2_m_s2,
+                              since_s * estimator_.beta_3_m_s3, kInfinity};
     for (size_t c = 0; c < sum.size(); ++c) arm->error[c] = std::max(sum[c] / degree, f[c] - moved[c]);
     arm->coasted_s = 0.0;
   }
@@ -150,14 +150,14 @@ class BoundRecursion {
 
   // The bounds of a prediction over `t_s`, whose jerk drifts off by the snap, or at most from one extreme to
   // the other.
-  Errors Ahead(const Errors& e, double t_s) const {
+  Deviations Ahead(const Deviations& e, double t_s) const {
     return Predict(e, t_s, leader_.snap_m_s4, 2.0 * leader_.jerk_m_s3);
   }
   // Of one that takes the jerk for 0.
-  Errors AheadWithoutJerk(const Errors& e, double t_s) const {
+  Deviations AheadWithoutJerk(const Deviations& e, double t_s) const {
     return Predict({e[0], e[1], e[2], leader_.jerk_m_s3}, t_s, 0.0, leader_.jerk_m_s3);
   }
-  static Errors Predict(const Errors& e, double t_s, double snap_m_s4, double jerk_max_m_s3) {
+  static Deviations Predict(const Deviations& e, double t_s, double snap_m_s4, double jerk_max_m_s3) {
     const double t2 = t_s * t_s / 2.0;
     const double t3 = t2 * t_s / 3.0;
     const double t4 = t3 * t_s / 4.0;
@@ -168,7 +168,7 @@ class BoundRecursion {
   }
 
   // Of a state that is older than its receiver can see.
-  Errors Outdated(const Errors& e) const {
+  Deviations Outdated(const Deviations& e) const {
     if (unseen_s_ <= 0.0) return e;
     return {e[0] + unseen_s_ * leader_.v_m_s, e[1] + unseen_s_ * leader_.a_m_s2,
             e[2] + unseen_s_ * leader_.jerk_m_s3,

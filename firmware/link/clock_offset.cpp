@@ -6,11 +6,10 @@
 namespace armada {
 namespace {
 
-constexpr double kNsPerS = 1e9;
 constexpr int64_t kNone = std::numeric_limits<int64_t>::max();
 
 int64_t ToNs(double seconds) {
-  return static_cast<int64_t>(seconds * kNsPerS);
+  return static_cast<int64_t>(1e9 * seconds);
 }
 
 }  // namespace
@@ -42,7 +41,7 @@ Freshness ClockOffset::Update(const MessageTime& message) {
 double ClockOffset::AgeS(int64_t stamp_ns, int64_t now_ns) const {
   if (!state_.heard) return std::numeric_limits<double>::infinity();
   const int64_t offset_ns = std::min(state_.window_min_ns, state_.previous_min_ns);
-  return static_cast<double>(now_ns - stamp_ns - offset_ns) / kNsPerS + config_.wire_time_s;
+  return static_cast<double>(now_ns - stamp_ns - offset_ns) / 1e9 + config_.wire_time_s;
 }
 
 void ClockOffset::Forget(const MessageTime& message) {

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil/same_instant.h"
+
 namespace armada {
-namespace {
-
-// Events closer together than this are one: below it, differences of times are rounding.
-constexpr double kSameInstant_s = 1e-9;
-
-}  // namespace
 
 bool HeldDisturbance::Renew(double t_s, const PlanarPlant& plant) {
   const double until_s = NextChange(t_s);

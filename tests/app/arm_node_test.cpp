@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kEncoderEstimatesOfNode1 = 0x029;
 
-ScenarioConfig PaperScenario() {
+ScenarioConfig LoadedPaperScenario() {
   std::vector<ConfigError> errors;
   auto scenario = LoadScenario(ARMADA_SOURCE_DIR "/hil/scenarios/paper.toml", {}, &errors);
   EXPECT_TRUE(errors.empty());
@@ -26,7 +26,7 @@ ScenarioConfig PaperScenario() {
 class Board : public testing::Test {
  protected:
   Board()
-      : scenario_(PaperScenario()),
+      : scenario_(LoadedPaperScenario()),
         leader_(scenario_.leader),
         start_(DrawStart(scenario_, 0, 1, &leader_)),
         node_(scenario_.fleet, 0, start_.controller, kEpochNs, {StartMode::kRunning, 0, std::nullopt}),

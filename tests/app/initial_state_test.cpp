@@ -9,7 +9,7 @@
 namespace armada {
 namespace {
 
-ArmEntry PaperArm(size_t index) {
+ArmEntry PaperEntry(size_t index) {
   std::vector<ConfigError> errors;
   const auto fleet = LoadFleet(ARMADA_SOURCE_DIR "/firmware/fleets/paper.toml", {}, &errors);
   EXPECT_TRUE(errors.empty());
@@ -17,22 +17,22 @@ ArmEntry PaperArm(size_t index) {
 }
 
 // Tests run in parallel: a file each.
-std::string TemporaryFile() {
+std::string FreshPath() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   return testing::TempDir() + "/armada_initial_state_" + test->name() + ".toml";
 }
 
 TEST(InitialState, ReadsBackExactlyWhatWasWritten) {
-  const ArmEntry arm = PaperArm(5);
+  const ArmEntry arm = PaperEntry(5);
   ArmInitialState state = NominalInitialState(arm);
   state.zeta.x_m << 0.1, -4.999999999999999;
   state.zeta.v_m_s << 1.0 / 3.0, 2.0;
   state.zeta.a_m_s2 << -1e-17, 5.0;
   state.theta_hat *= 1.0 / 7.0;
   std::string error;
-  ASSERT_TRUE(WriteInitialState(state, arm, TemporaryFile(), &error)) << error;
+  ASSERT_TRUE(WriteInitialState(state, arm, FreshPath(), &error)) << error;
   std::vector<ConfigError> errors;
-  const auto read = LoadInitialState(TemporaryFile(), arm, &errors);
+  const auto read = LoadInitialState(FreshPath(), arm, &errors);
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->zeta.x_m, state.zeta.x_m);
   EXPECT_EQ(read->zeta.v_m_s, state.zeta.v_m_s);
@@ -66,27 +66,27 @@ ArmInitialState Learnt(const ArmEntry& arm) {
 }
 
 TEST(InitialState, WhatWasLearntReadsBackExactly) {
-  const ArmEntry arm = PaperArm(5);
+  const ArmEntry arm = PaperEntry(5);
   const ArmInitialState learnt = Learnt(arm);
   EXPECT_NE(learnt.theta_hat, 2.0 * NominalInitialState(arm).theta_hat);
   const double deviation = arm.control.adaptation.initial_deviation;
   EXPECT_LT(learnt.P_theta.trace(), 6.0 * deviation * deviation) << "surer than at its start";
   std::string error;
-  ASSERT_TRUE(WriteInitialState(learnt, arm, TemporaryFile(), &error)) << error;
+  ASSERT_TRUE(WriteInitialState(learnt, arm, FreshPath(), &error)) << error;
   std::vector<ConfigError> errors;
-  const auto read = LoadInitialState(TemporaryFile(), arm, &errors);
+  const auto read = LoadInitialState(FreshPath(), arm, &errors);
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->theta_hat, learnt.theta_hat);
   EXPECT_EQ(read->P_theta, learnt.P_theta);
 }
 
 TEST(InitialState, IsBoundToTheArmsEntryButNotToItsTuning) {
-  const ArmEntry arm = PaperArm(5);
+  const ArmEntry arm = PaperEntry(5);
   std::string error;
-  ASSERT_TRUE(WriteInitialState(Learnt(arm), arm, TemporaryFile(), &error)) << error;
+  ASSERT_TRUE(WriteInitialState(Learnt(arm), arm, FreshPath(), &error)) << error;
   const auto fits = [](const ArmEntry& entry) {
     std::vector<ConfigError> errors;
-    const bool read = LoadInitialState(TemporaryFile(), entry, &errors).has_value();
+    const bool read = LoadInitialState(FreshPath(), entry, &errors).has_value();
     EXPECT_EQ(read, errors.empty());
     if (!read) {
       EXPECT_EQ(errors[0].key, "arm_entry");
@@ -113,18 +113,18 @@ TEST(InitialState, ACovarianceThatIsNoneIsRefusedWithItsLine) {
   for (const char* P : {"[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.0, 0.0], [0.0, 1.0], [0.0, 0.0, 1.0]]",
                         "[[1.0, 2.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]",
                         "[[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]]"}) {
-    std::ofstream(TemporaryFile()) << "theta_hat = [1.0, 2.0, 3.0]\nP_theta = " << P << "\n";
+    std::ofstream(FreshPath()) << "theta_hat = [1.0, 2.0, 3.0]\nP_theta = " << P << "\n";
     std::vector<ConfigError> errors;
-    EXPECT_FALSE(LoadInitialState(TemporaryFile(), PaperArm(0), &errors).has_value()) << P;
+    EXPECT_FALSE(LoadInitialState(FreshPath(), PaperEntry(0), &errors).has_value()) << P;
     ASSERT_EQ(errors.size(), 1u) << P;
     EXPECT_EQ(errors[0].line, 2) << P;
   }
 }
 
 TEST(InitialState, OfAnotherArmIsRefusedWithItsLine) {
-  std::ofstream(TemporaryFile()) << "zeta_x_m = [1.0, 2.0]\ntheta_hat = [1.0, 2.0]\n";
+  std::ofstream(FreshPath()) << "zeta_x_m = [1.0, 2.0]\ntheta_hat = [1.0, 2.0]\n";
   std::vector<ConfigError> errors;
-  EXPECT_FALSE(LoadInitialState(TemporaryFile(), PaperArm(5), &errors).has_value());
+  EXPECT_FALSE(LoadInitialState(FreshPath(), PaperEntry(5), &errors).has_value());
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].line, 2);
   EXPECT_EQ(errors[0].message, "given 2 values, arm 6 has 6");
@@ -132,7 +132,7 @@ TEST(InitialState, OfAnotherArmIsRefusedWithItsLine) {
 
 TEST(InitialState, MissingFileIsNamed) {
   std::vector<ConfigError> errors;
-  EXPECT_FALSE(LoadInitialState("/nonexistent.toml", PaperArm(0), &errors).has_value());
+  EXPECT_FALSE(LoadInitialState("/nonexistent.toml", PaperEntry(0), &errors).has_value());
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].file, "/nonexistent.toml");
 }

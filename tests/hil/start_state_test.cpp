@@ -9,7 +9,7 @@
 namespace armada {
 namespace {
 
-ScenarioConfig PaperScenario(StartKind kind) {
+ScenarioConfig ScenarioOfPaperArms(StartKind kind) {
   ScenarioConfig scenario;
   for (int id = 1; id <= 7; ++id) {
     ArmEntry entry;
@@ -34,7 +34,7 @@ std::vector<double> Numbers(const ArmStart& start) {
 }
 
 TEST(StartState, BoxFillsThePapersRanges) {
-  const ScenarioConfig scenario = PaperScenario(StartKind::kBox);
+  const ScenarioConfig scenario = ScenarioOfPaperArms(StartKind::kBox);
   const LeaderPath leader(scenario.leader);
   double lowest = 0.0, highest = 0.0, theta_lowest = 5.0, theta_highest = 0.0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
@@ -61,7 +61,7 @@ TEST(StartState, BoxFillsThePapersRanges) {
 }
 
 TEST(StartState, SameSeedSameStart) {
-  const ScenarioConfig scenario = PaperScenario(StartKind::kBox);
+  const ScenarioConfig scenario = ScenarioOfPaperArms(StartKind::kBox);
   const LeaderPath leader(scenario.leader);
   const std::vector<double> first = Numbers(DrawStart(scenario, 2, 11, &leader));
   EXPECT_EQ(first, Numbers(DrawStart(scenario, 2, 11, &leader)));
@@ -70,7 +70,7 @@ TEST(StartState, SameSeedSameStart) {
 }
 
 TEST(StartState, NearLeaderIsAtRestWithTheEndEffectorNearTheLeader) {
-  const ScenarioConfig scenario = PaperScenario(StartKind::kNearLeader);
+  const ScenarioConfig scenario = ScenarioOfPaperArms(StartKind::kNearLeader);
   const LeaderPath leader(scenario.leader);
   const TaskVector x_0 = leader.At(0.0).x_m;
   for (uint64_t seed = 0; seed < 50; ++seed) {
@@ -89,7 +89,7 @@ TEST(StartState, NearLeaderIsAtRestWithTheEndEffectorNearTheLeader) {
 }
 
 TEST(ReachFrom, FindsThePointFromWhateverPosture) {
-  const ScenarioConfig scenario = PaperScenario(StartKind::kBox);
+  const ScenarioConfig scenario = ScenarioOfPaperArms(StartKind::kBox);
   const LeaderPath leader(scenario.leader);
   for (uint64_t seed = 0; seed < 200; ++seed) {
     for (size_t i = 0; i < 7; ++i) {

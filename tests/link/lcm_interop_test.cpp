@@ -19,7 +19,7 @@
 namespace armada {
 namespace {
 
-constexpr int kPatience_ms = 20'000;
+constexpr int kPeerPatience_ms = 20'000;
 
 class LcmInterop : public PrivateNetworkTest {
  protected:
@@ -51,7 +51,7 @@ TEST_F(LcmInterop, LibLcmReceivesWhatTheEndpointSends) {
                          {"TEL_6", Bytes(GoldenTelemetry())},
                          {std::string(63, 'x'), {}}};
   for (const Message& message : sent) ASSERT_TRUE(endpoint->Publish(message.channel, message.payload));
-  while (heard.size() < sent.size() && lcm.handleTimeout(kPatience_ms) > 0) {
+  while (heard.size() < sent.size() && lcm.handleTimeout(kPeerPatience_ms) > 0) {
   }
   EXPECT_EQ(heard, sent);
 }
@@ -116,7 +116,7 @@ class Logger {
 
   // Publishes on `channel` again and again until it is in the log.
   bool HasHeard(const std::string& channel, LcmEndpoint* endpoint) const {
-    for (int waited_ms = 0; waited_ms < kPatience_ms; waited_ms += 10) {
+    for (int waited_ms = 0; waited_ms < kPeerPatience_ms; waited_ms += 10) {
       EXPECT_TRUE(endpoint->Publish(channel, {}));
       poll(nullptr, 0, 10);
       for (const Message& message : Read()) {

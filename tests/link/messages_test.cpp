@@ -10,22 +10,13 @@
 #include "firmware/core/types.h"
 #include "tests/link/golden_bytes.h"
 #include "tests/link/golden_messages.h"
+#include "tests/link/hex.h"
 
 namespace armada {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::string Hex(std::span<const uint8_t> bytes) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const uint8_t byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 0xF];
-  }
-  return text;
-}
 
 template <class Message>
 bool IsAccepted(const Message& message) {

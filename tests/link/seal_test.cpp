@@ -6,6 +6,7 @@
 
 #include "tests/link/golden_bytes.h"
 #include "tests/link/golden_messages.h"
+#include "tests/link/hex.h"
 #include "tests/support/limit_malloc.h"
 
 namespace armada {
@@ -18,16 +19,6 @@ FleetKey CountingKey() {
   FleetKey key;
   std::iota(key.begin(), key.end(), uint8_t{0});
   return key;
-}
-
-std::string Hex(std::span<const uint8_t> bytes) {
-  std::string text;
-  char two[3];
-  for (const uint8_t byte : bytes) {
-    std::snprintf(two, sizeof two, "%02x", byte);
-    text += two;
-  }
-  return text;
 }
 
 class SealTest : public testing::Test {
