@@ -4,6 +4,7 @@
 #   armada_code(warm TARGET...)   what runs long in tests or fuzzers only: tests that calculate, judges, configuration
 #   armada_code(cold TARGET...)   what runs once or for people: command lines, reports, other tests
 #   armada_in_batches(TARGET...)  sources are compiled a few at a time, as one
+#   armada_first(TARGET...)       of what several targets instantiate, programs get what these libraries have compiled
 
 option(ARMADA_PCH "Precompile headers that are not ours" ON)
 option(ARMADA_BATCHES "Compile several sources at once, where a target says so" ON)
@@ -48,8 +49,18 @@ function(armada_code kind)
   endforeach()
 endfunction()
 
+# The linker keeps the first of several copies of an inline function, and the objects of a program come first: with
+# sanitizers a controller would run Eigen as its cold code or its test has compiled it, without optimisation.
+function(armada_first)
+  if(ARMADA_SANITIZE)
+    foreach(target IN LISTS ARGN)
+      target_link_options(${target} INTERFACE LINKER:--whole-archive,$<TARGET_FILE:${target}>,--no-whole-archive)
+    endforeach()
+  endif()
+endfunction()
+
 # What templates of the standard library and of Eigen instantiate is shared by a batch. Names of one batch must not clash,
 # those in unnamed namespaces included: give helpers that two sources have the same name one place, or two names.
 function(armada_in_batches)
-  set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ${ARMADA_BATCHES} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ${ARMADA_BATCHES} UNITY_BUILD_BATCH_SIZE 10)
 endfunction()
