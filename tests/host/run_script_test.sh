@@ -33,6 +33,11 @@ stand_in cmake <<'END'
 echo "$*" >>"$box/cmake_calls"
 [[ $1 != --preset ]] || { mkdir -p "build/$2"; cp "$box/tests" "build/$2/CTestTestfile.cmake"; }
 [[ ! -f $box/build_is_broken ]] || { echo '[1/2] Building'; echo 'a.cpp:1: error: broken'; exit 1; }
+if [[ $* == "--build --preset sanitize"* ]]; then
+  [[ ! -f $box/sanitize_is_broken ]] || { echo 'b.cpp:1: error: broken'; exit 1; }
+  [[ ! -f $box/sanitize_takes_long ]] || sleep 60.25
+fi
+[[ ! -f build/release/old.pch ]] || { echo "fatal error: modified since the precompiled header 'old.pch'"; exit 1; }
 mkdir -p build/release/bin
 cat >build/release/bin/armada <<'PROGRAM'
 #!/bin/bash
@@ -154,7 +159,7 @@ given '' 0 0
 when hil
 check 'hil succeeds' test "$code" = 0
 check 'and gets the kernels, then runs' test "$(cat vm_calls)" = \
-  "$(printf '%s\n' "image into $box/kernels" "hil build/release/bin out/hil $box/kernels")"
+  "$(printf '%s\n' "image into $box/kernels" "hil build/release/bin out/hil --seconds 20 $box/kernels")"
 check 'and prints the figures' says 'figures'
 given '' 0 1
 when hil
@@ -203,6 +208,26 @@ check 'a test that fails is a failure' test "$code" = 1
 check 'and is named' says 'core.Supervisor.Breaks'
 check 'and counted' test "$(tail -n 1 output)" = 'tests: 2 passed, 1 failed'
 check 'after the time of all' ends_with '^in all +[0-9]+\.[0-9] s'
+touch sanitize_takes_long
+when test -R core
+check 'then nobody waits for the build that goes on beside' says 'tests: 2 passed, 1 failed'
+check 'which ends' timeout 5 bash -c 'while pgrep -f "sleep 60.2[5]"; do :; done'
+check 'without a word of the shell' silent_about 'erminated'
+rm sanitize_takes_long
+sed -i '$d' tests
+touch sanitize_is_broken
+when test -R core
+check 'a build with sanitizers that fails is a failure' test "$code" = 1
+check 'with its message' says 'b.cpp:1: error: broken'
+check 'and says which build it was' says 'the sanitize build failed'
+rm sanitize_is_broken
+
+given '' 0 0
+mkdir -p project/build/release
+touch project/build/release/old.pch
+when build
+check 'what was precompiled of former headers is made anew' test "$code" = 0
+
 given '' 0 0
 when fuzz --seconds 0
 check 'a fuzzer runs for some time' test "$code" = 2
