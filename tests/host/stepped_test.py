@@ -7,6 +7,7 @@ the traces, byte for byte.
 
 usage: stepped_test.py BIN_DIR SOURCE_DIR [--runs N] [--seconds S]      N of each condition, S seconds of the run
        stepped_test.py --demo CHECKOUT [--runs N]                       by `./run demo --pace 0` there
+--only CONDITION: that one, against a single run on the machine as it is.
 """
 
 import argparse
@@ -96,12 +97,17 @@ def main():
     parser.add_argument("--demo", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=6.0)
+    parser.add_argument("--only", choices=CONDITIONS)
     options = parser.parse_args()
+    series = dict.fromkeys(CONDITIONS, options.runs)
+    if options.only:
+        series = {"idle": 1, options.only: options.runs}
     failed, done, first = 0, 0, None
     with tempfile.TemporaryDirectory() as name:
-        for condition, (prefix, around) in CONDITIONS.items():
+        for condition, runs in series.items():
+            prefix, around = CONDITIONS[condition]
             speeds = []
-            for _ in range(options.runs):
+            for _ in range(runs):
                 if options.demo:
                     folder = options.demo.resolve() / "out/demo"
                     command = [options.demo.resolve() / "run", "demo", "--pace", "0"]
