@@ -50,8 +50,9 @@ def programs_of(folder):
     """Processes of the run that goes on in a folder."""
     for entry in pathlib.Path("/proc").iterdir():
         with contextlib.suppress(OSError, ValueError):
-            words = (entry / "cmdline").read_bytes().split(b"\0")
-            if words[0].decode().endswith(PROGRAMS) and any(str(folder).encode() in word for word in words):
+            words = (entry / "cmdline").read_bytes().decode().split("\0")
+            place = (entry / "cwd").readlink()  # its words may be relative
+            if words[0].endswith(PROGRAMS) and any((place / word).is_relative_to(folder) for word in words[1:]):
                 yield int(entry.name)
 
 
