@@ -45,8 +45,7 @@ def judge(directory):
         for loss in LOSSES:
             bound(arm["bus"][loss], 0, loss)
         wakeup, torque = timing["wakeup_lateness_us"], timing["sample_to_torque_us"]
-        if timing["ticks"] >= 1000:  # of fewer it is the largest
-            bound(wakeup["p99.9"], WAKEUP_P999_US, "wake-up lateness p99.9 [us]")
+        bound(wakeup["p99.9"], WAKEUP_P999_US, "wake-up lateness p99.9 [us]")
         bound(wakeup["max"], WAKEUP_MAX_US, "wake-up lateness max [us]")
         bound(torque["p99"], TORQUE_P99_US, "sample to torque p99 [us]")
         bound(torque["max"], TORQUE_MAX_US, "sample to torque max [us]")

@@ -159,7 +159,7 @@ given '' 0 0
 when hil
 check 'hil succeeds' test "$code" = 0
 check 'and gets the kernels, then runs' test "$(cat vm_calls)" = \
-  "$(printf '%s\n' "image into $box/kernels" "hil build/release/bin out/hil --seconds 20 $box/kernels")"
+  "$(printf '%s\n' "image into $box/kernels" "hil build/release/bin out/hil $box/kernels")"
 check 'and prints the figures' says 'figures'
 given '' 0 1
 when hil
