@@ -3,8 +3,7 @@
 usage: plan.py guests|stepped SEED PHASES DIR [RUN]    writes DIR/<run>_<policy>.toml until PHASES kills and stops are
                                                        planned; with RUN only that run
 
-In stepped time no link can be cut, since the user-space bus has none, and no program is slow; so that is most of what
-happens in guests. The same seed gives the same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
+In stepped time no link can be cut, since the user-space bus has none, and no program is slow. The same seed gives the same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
 """
 
 import itertools
@@ -26,9 +25,9 @@ KINDS = (
     (10, "controller_stops", (0.001, 0.030)),
     (5, "controller_restarts", (0.130, 0.400)),
 )
-BUS_DOWN = {"guests": 0.5, "stepped": 0.0}  # share of the boards that are cut off from their drives in place of that
+BUS_DOWN = {"guests": 0.15, "stepped": 0.0}  # share of the boards that are cut off from their drives in place of that
 LEADER_DIES = 0.25  # share of the runs
-HOG = {"guests": 0.5, "stepped": 0.0}  # share of the runs with a hog that must change nothing; with one above the boards
+HOG = {"guests": 0.25, "stepped": 0.0}  # share of the runs with a hog that must change nothing; with one above the boards
 HOLD = 0.3  # share of the runs in which a stopped neighbour stops an arm
 
 

@@ -9,6 +9,7 @@
 #include "tests/can/frames.h"
 #include "tests/can/private_network.h"
 #include "tests/can/python_judge.h"
+#include "tests/support/hex.h"
 
 namespace armada {
 namespace {
@@ -16,16 +17,6 @@ namespace {
 constexpr int64_t kForever_ns = INT64_MAX / 2;
 constexpr char kGroup[] = "239.74.163.11";
 constexpr uint16_t kPort = 43113;
-
-std::string ToHex(std::span<const uint8_t> bytes) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const uint8_t byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
 
 TEST(PythonCan, PacksTheSameBytesAsWe) {
   PythonJudge judge({"codec"});
@@ -35,7 +26,7 @@ TEST(PythonCan, PacksTheSameBytesAsWe) {
     UdpFrameBuffer buffer;
     const size_t size = EncodeUdpFrame(frame, 1700000000.25, &buffer);
     judge.Ask("pack 1700000000.25 " + Describe(frame));
-    ASSERT_EQ(judge.Answer(), ToHex({buffer.data(), size})) << Describe(frame);
+    ASSERT_EQ(judge.Answer(), Hex({buffer.data(), size})) << Describe(frame);
   }
 }
 
@@ -46,7 +37,7 @@ TEST(PythonCan, UnpacksWhatWePack) {
     const CanFrame frame = RandomFrame(&random);
     UdpFrameBuffer buffer;
     const size_t size = EncodeUdpFrame(frame, 1.0, &buffer);
-    judge.Ask("unpack " + ToHex({buffer.data(), size}));
+    judge.Ask("unpack " + Hex({buffer.data(), size}));
     ASSERT_EQ(judge.Answer(), Describe(frame));
   }
 }

@@ -12,7 +12,8 @@ if os.geteuid() == 0:
 
 @contextlib.contextmanager
 def busy_loops(count):
-    loops = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(count)]
+    loop = ["setpriv", "--pdeathsig", "KILL", "sh", "-c", "while :; do :; done"]  # none outlives a killed measurement
+    loops = [subprocess.Popen(loop) for _ in range(count)]
     try:
         yield
     finally:

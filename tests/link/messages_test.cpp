@@ -10,7 +10,7 @@
 #include "firmware/core/types.h"
 #include "tests/link/golden_bytes.h"
 #include "tests/link/golden_messages.h"
-#include "tests/link/hex.h"
+#include "tests/support/hex.h"
 
 namespace armada {
 namespace {

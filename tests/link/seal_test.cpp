@@ -6,7 +6,7 @@
 
 #include "tests/link/golden_bytes.h"
 #include "tests/link/golden_messages.h"
-#include "tests/link/hex.h"
+#include "tests/support/hex.h"
 #include "tests/support/limit_malloc.h"
 
 namespace armada {
