@@ -7,8 +7,8 @@ Each BUILD_DIR is an up-to-date Ninja build with compile_commands.json; a source
 it compiles it, alone or in a batch of CMake's, but without the compiler's precompiled headers.
 
 Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources are checked in
-batches, as one translation unit: those with the same flags, but for optimisation, folders of headers and macros that do
-not contradict each other. A batch that passes shows that each of its sources would: no check of ours is silenced by other
+batches, as one translation unit: those with the same flags, but for optimisation, folders of headers and macros that are
+texts, such as paths, of which no two contradict each other. A batch that passes shows that each of its sources would: no check of ours is silenced by other
 code but misc-unused-using-decls, and that one is run on each source alone. A batch that does not pass, or does not
 compile as one, is halved, so that what is reported comes from a source alone.
 
@@ -98,7 +98,7 @@ class Batch:
 
     @property
     def flags(self):
-        return [*self.kind, *(f"-D{name}{value}" for name, value in self.macros.items()), *self.folders]
+        return [*self.kind, *(f"-D{name}={value}" for name, value in self.macros.items()), *self.folders]
 
     def takes(self, kind, names, macros):
         return (kind == self.kind and len(self.sources) < BATCH and not names & self.names and
@@ -112,15 +112,15 @@ class Batch:
 
 
 def parts_of(flags):
-    """Flags that sources of a batch must share, macros with their values, folders of headers."""
+    """Flags that sources of a batch must share, macros that are texts with their values, folders of headers."""
     kind, macros, folders = [], {}, []
     rest = iter(flags)
     for flag in rest:
-        if flag.startswith("-D"):
-            name = re.match(r"-D(\w+)", flag)[1]
-            macros[name] = flag[2 + len(name):]
+        if flag.startswith("-D") and '"' in flag:
+            name, _, value = flag[2:].partition("=")
+            macros[name] = value
         elif flag in ("-isystem", "-I"):
-            folders.append("-isystem" + next(rest) if flag == "-isystem" else "-I" + next(rest))
+            folders.append(flag + next(rest))
         elif flag.startswith("-I"):
             folders.append(flag)
         elif not flag.startswith("-O"):

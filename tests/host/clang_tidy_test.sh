@@ -32,8 +32,10 @@ batch=build/one/Unity/unity_0_cxx.cxx  # as CMake makes them
 
 lint() { # leaves $code and the file `output`
   {
-    printf 'rule cc\n  command = g++ -std=c++20 -I%s -o $out -c $in -MD -MF $out.d\n  deps = gcc\n  depfile = $out.d\n' "$box"
-    for file in firmware/*.cpp; do printf 'build %s.o: cc %s\n' "$(basename $file)" "$box/$file"; done
+    printf 'rule cc\n  command = g++ -std=c++20 $flags -I%s -o $out -c $in -MD -MF $out.d\n  deps = gcc\n  depfile = $out.d\n' "$box"
+    for file in firmware/*.cpp; do
+      printf 'build %s.o: cc %s\n  flags = %s\n' "$(basename $file)" "$box/$file" "$(sed -n 's/^flags //p' $file.flags 2>/dev/null)"
+    done
     [[ ! -e $batch ]] || printf 'build batch.o: cc %s\n' "$box/$batch"
   } >build/one/build.ninja
   ninja -C build/one >/dev/null
@@ -100,6 +102,26 @@ echo 'int* Nowhere() { return 0; }' >>firmware/batch/seventh.cpp
 lint
 check 'a fault in one is found' says 'firmware/batch/seventh.cpp:4:25: error: use nullptr [modernize-use-nullptr'
 check 'and the other is not checked again' says '7 files, 1 checked'
+
+# Macros: what another source of the batch is compiled with hides nothing.
+printf '#ifndef OTHER\nint* Without() { return 0; }\n#endif\n' >firmware/without.cpp
+printf '#if VALUE == 2\nint* WithTwo() { return 0; }\n#endif\n' >firmware/two.cpp
+echo 'int Other() { return 1; }' >firmware/other.cpp
+echo 'int One() { return 1; }' >firmware/one.cpp
+echo 'flags -DOTHER=1' >firmware/other.cpp.flags
+echo 'flags -DVALUE=1' >firmware/one.cpp.flags
+echo 'flags -DVALUE=2' >firmware/two.cpp.flags
+lint
+check 'a fault that a macro of another source would hide' says 'firmware/without.cpp:2:25: error: use nullptr'
+check 'or another value of the same macro' says 'firmware/two.cpp:2:25: error: use nullptr'
+
+# Each fuzzer has the same entry.
+for name in eighth ninth; do
+  printf 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long);\nextern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }\n' >firmware/$name.cpp
+done
+echo 'int* Nowhere() { return 0; }' >>firmware/ninth.cpp
+lint
+check 'a fault in a fuzzer is found' says 'firmware/ninth.cpp:3:25: error: use nullptr'
 
 ((failed == 0)) || exit 1
 echo 'all as promised'
