@@ -28,10 +28,10 @@ constexpr int64_t kRetry_ns = 10'000'000;
 // It inherits the lock: nobody takes the folder before it is clean. In a session of its own: what ends our
 // process group must not end it.
 std::string JanitorOf(const std::string& directory) {
-  std::string command = "exec setsid sh -c 'cd \"$1\" && cat >/dev/null && rm -f";
+  std::string command = "exec setsid sh -c 'unset CDPATH && cd -P -- \"$1\" && cat >/dev/null && rm -f";
   for (const char* name : {LiveFaults::kOfProcesses, LiveFaults::kOfEmulation, RunFolder::kLock})
     command.append(" ").append(name);
-  return command + "' janitor " + ShellQuoted(directory) + " 2>/dev/null";
+  return command + "' janitor " + ShellQuoted(fs::absolute(directory).string()) + " 2>/dev/null";
 }
 
 void SetInherited(int descriptor, bool inherited) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -73,6 +74,28 @@ TEST_F(RunFolderTest, NothingStaysBehindOfAProcessThatIsKilled) {
   EXPECT_TRUE(Has(RunFolder::kLock)) << "of the next one";
   close(ready[0]);
   close(ready[1]);
+}
+
+// A shell's cd looks elsewhere first when CDPATH says so, and takes "-" for the folder before.
+TEST_F(RunFolderTest, WhatIsRemovedAtTheEndIsNeverInAnotherFolder) {
+  const fs::path elsewhere = temp_.path() / "elsewhere";
+  const fs::path here = fs::current_path();
+  for (const std::string name : {"run", "-"}) {
+    fs::create_directories(elsewhere / name);
+    std::ofstream(elsewhere / name / RunFolder::kLock) << "of another run";
+    fs::create_directories(temp_.path() / "here");
+    fs::current_path(temp_.path() / "here");
+    setenv("CDPATH", elsewhere.c_str(), 1);
+    setenv("OLDPWD", (elsewhere / name).c_str(), 1);
+    folder_ = name;
+    auto folder = Take();
+    unsetenv("CDPATH");
+    ASSERT_NE(folder, nullptr) << error_;
+    folder.reset();
+    EXPECT_TRUE(fs::exists(elsewhere / name / RunFolder::kLock)) << name;
+    EXPECT_FALSE(Has(RunFolder::kLock)) << name;
+    fs::current_path(here);
+  }
 }
 
 TEST_F(RunFolderTest, AFolderThatCannotBeMadeIsNotInUse) {
