@@ -52,8 +52,12 @@ bool RunNetworks::Provide(const RunOptions& options, FleetConfig* fleet, std::st
   const std::vector<std::string> interfaces = SocketCanInterfaces(*fleet, options.hil_buses);
   const std::vector<std::string> wanted = NamesToReserve(*fleet, options.hil_buses);
   // As fast as it goes nobody could follow anyway, and strangers would be heard.
-  if (options.time == "stepped" && options.pace == 0.0 && EnterPrivateNetwork(error)) return true;
-  error->clear();
+  if (options.time == "stepped" && options.pace == 0.0) {
+    if (EnterPrivateNetwork(error)) return true;
+    std::cout << "note: " << *error << ": what others send on " << fleet->link.lcm_url
+              << " is heard by this run\n";
+    error->clear();
+  }
   if (std::string taken; !HasMulticastRoute()) {
     if (!EnterOwnNetwork("no multicast route here", *url, interfaces, error)) {
       error->append("; add a route: ip link set dev lo multicast on; ip route add 224.0.0.0/4 dev ");
