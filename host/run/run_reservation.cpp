@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <string_view>
 
+#include "firmware/can/bus_name.h"
+#include "firmware/link/lcm_url.h"
+
 namespace armada {
 namespace {
 
@@ -65,9 +68,16 @@ bool RunReservation::Take(const std::vector<std::string>& names, std::string* ta
 }
 
 std::vector<std::string> NamesToReserve(const FleetConfig& fleet, const std::vector<std::string>& hil_buses) {
-  const std::string& url = fleet.link.lcm_url;
-  std::vector<std::string> names = {url.substr(0, url.find('?'))};
-  const auto add = [&](const std::string& name) {
+  std::string ignored;
+  const std::string given = fleet.link.lcm_url;
+  const auto url = ParseLcmUrl(given, &ignored);
+  const std::string link = url ? ToString(*url) : given;
+  std::vector<std::string> names = {link.substr(0, link.find('?'))};
+  // However it is spelt, a place is one.
+  const auto add = [&](const std::string& text) {
+    const auto bus = ParseBusName(text, &ignored);
+    const bool udp = bus && bus->kind == BusKind::kUdp;
+    const std::string name = udp ? "udp:" + bus->group + ":" + std::to_string(bus->port) : text;
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
   for (const ArmEntry& arm : fleet.arms) add(arm.bus);

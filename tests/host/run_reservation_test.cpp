@@ -45,5 +45,15 @@ TEST(RunReservationTest, ARunReservesItsNetworkAndEveryBusOnce) {
                                    "socketcan:can1"));
 }
 
+TEST(RunReservationTest, APlaceIsOneHoweverItIsSpelt) {
+  FleetConfig fleet;
+  fleet.link.lcm_url = "udpm://239.255.76.67:07667?ttl=0";
+  fleet.arms.resize(2);
+  fleet.arms[0].bus = "udp:239.74.163.2:43113?ttl=0";
+  fleet.arms[1].bus = "udp:239.74.163.2:043113";
+  EXPECT_THAT(NamesToReserve(fleet, {}),
+              testing::ElementsAre("udpm://239.255.76.67:7667", "udp:239.74.163.2:43113"));
+}
+
 }  // namespace
 }  // namespace armada
