@@ -8,9 +8,13 @@ it compiles it, alone or in a batch of CMake's, but without the compiler's preco
 
 Most of clang-tidy's time goes into the headers of the standard library and of Eigen. Therefore sources are checked in
 batches, as one translation unit: those with the same flags, but for optimisation, folders of headers and macros that are
-texts, such as paths, of which no two contradict each other. A batch that passes shows that each of its sources would: no check of ours is silenced by other
-code but misc-unused-using-decls, and that one is run on each source alone. A batch that does not pass, or does not
-compile as one, is halved, so that what is reported comes from a source alone.
+texts, such as paths, of which no two contradict each other. misc-unused-using-decls is run on each source alone. A batch
+that does not pass, or does not compile as one, is halved, so that what is reported comes from a source alone.
+
+What a batch is known to hide, as other code comes before a source's own: unused constants at file scope, `#pragma once` in
+a source, bugprone-forward-declaration-namespace and bugprone-argument-comment where another source declares the same name,
+what stands under a macro that another source defines or undefines, using-declarations of the global namespace or of
+several names, and faults in a source that all others include (cmake/headers.cpp).
 
 A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: its compile
 command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read

@@ -3,7 +3,8 @@
 usage: plan.py guests|stepped SEED PHASES DIR [RUN]    writes DIR/<run>_<policy>.toml until PHASES kills and stops are
                                                        planned; with RUN only that run
 
-In stepped time no link can be cut, since the user-space bus has none, and no program is slow. The same seed gives the same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
+In stepped time no link can be cut, since the user-space bus has none, and no program is slow. The same seed gives the
+same runs, and each run is drawn by itself: it stays what it is whatever PHASES are.
 """
 
 import itertools

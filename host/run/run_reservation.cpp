@@ -68,12 +68,11 @@ bool RunReservation::Take(const std::vector<std::string>& names, std::string* ta
 }
 
 std::vector<std::string> NamesToReserve(const FleetConfig& fleet, const std::vector<std::string>& hil_buses) {
-  std::string ignored;
-  const std::string given = fleet.link.lcm_url;
-  const auto url = ParseLcmUrl(given, &ignored);
-  const std::string link = url ? ToString(*url) : given;
-  std::vector<std::string> names = {link.substr(0, link.find('?'))};
   // However it is spelt, a place is one.
+  std::string ignored;
+  const auto url = ParseLcmUrl(fleet.link.lcm_url, &ignored);
+  const std::string link = url ? ToString(*url) : fleet.link.lcm_url;
+  std::vector<std::string> names = {link.substr(0, link.find('?'))};
   const auto add = [&](const std::string& text) {
     const auto bus = ParseBusName(text, &ignored);
     const bool udp = bus && bus->kind == BusKind::kUdp;

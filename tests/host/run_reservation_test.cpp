@@ -34,23 +34,26 @@ TEST(RunReservationTest, OneThatFailsHoldsNothingAndOneThatEndsFreesAll) {
   EXPECT_TRUE(third.Take({Name("lcm"), Name("other")}, &taken)) << taken;
 }
 
-TEST(RunReservationTest, ARunReservesItsNetworkAndEveryBusOnce) {
+FleetConfig FleetOn(const char* lcm_url, const char* first_bus, const char* second_bus) {
   FleetConfig fleet;
-  fleet.link.lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  fleet.link.lcm_url = lcm_url;
   fleet.arms.resize(2);
-  fleet.arms[0].bus = "socketcan:can0";
-  fleet.arms[1].bus = "udp:239.74.163.2:43113";
+  fleet.arms[0].bus = first_bus;
+  fleet.arms[1].bus = second_bus;
+  return fleet;
+}
+
+TEST(RunReservationTest, ARunReservesItsNetworkAndEveryBusOnce) {
+  const FleetConfig fleet =
+      FleetOn("udpm://239.255.76.67:7667?ttl=0", "socketcan:can0", "udp:239.74.163.2:43113");
   EXPECT_THAT(NamesToReserve(fleet, {"1=socketcan:can1", "2=socketcan:can0"}),
               testing::ElementsAre("udpm://239.255.76.67:7667", "socketcan:can0", "udp:239.74.163.2:43113",
                                    "socketcan:can1"));
 }
 
 TEST(RunReservationTest, APlaceIsOneHoweverItIsSpelt) {
-  FleetConfig fleet;
-  fleet.link.lcm_url = "udpm://239.255.76.67:07667?ttl=0";
-  fleet.arms.resize(2);
-  fleet.arms[0].bus = "udp:239.74.163.2:43113?ttl=0";
-  fleet.arms[1].bus = "udp:239.74.163.2:043113";
+  const FleetConfig fleet =
+      FleetOn("udpm://239.255.76.67:07667?ttl=0", "udp:239.74.163.2:43113?ttl=0", "udp:239.74.163.2:043113");
   EXPECT_THAT(NamesToReserve(fleet, {}),
               testing::ElementsAre("udpm://239.255.76.67:7667", "udp:239.74.163.2:43113"));
 }
