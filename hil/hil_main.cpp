@@ -1,7 +1,7 @@
 // armada-hil: a scenario's arms and drives, emulated in real time on the fleet's buses.
 //
-// Exit codes: 0 ran to its end or to a signal; 1 a bus or a file cannot be used; 2 usage; 78 bad
-// configuration.
+// Exit codes: 0 ran to its end; 1 a bus or a file cannot be used; 2 usage; 78 bad configuration; 130 a signal
+// stopped it.
 
 #include <sys/prctl.h>
 
@@ -228,7 +228,7 @@ int Run(const Options& options) {
   for (const HilArmResult& arm : report.arms) {
     if (arm.bus_down) return Fail(BusDown(arm.bus, report.seconds));
   }
-  return code;
+  return code == kExitOk && report.end == HilEnd::kStopped ? kExitInterrupted : code;
 }
 
 }  // namespace

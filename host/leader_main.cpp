@@ -80,6 +80,7 @@ struct Tally {
   int64_t sent = 0;
   int64_t refused = 0;  // by the kernel
   int64_t skipped = 0;  // grid times that passed before the process woke up: never sent late in a burst
+  bool ended = false;   // sent all of its run
 };
 
 Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, std::optional<Sealer>& sealer,
@@ -101,6 +102,7 @@ Tally Publish(const LeaderPath& path, const Grid& grid, double seconds, std::opt
     tally.skipped += next - (k + 1);
     k = next;
   }
+  tally.ended = grid.PathTime(k) >= seconds;
   return tally;
 }
 
@@ -153,6 +155,7 @@ int Run(const Options& options) {
       Publish(LeaderPath(scenario->leader), Grid(epoch_ns, rate_hz), options.seconds, sealer, *lcm, *clock);
   std::cout << "armada-leader: " << tally.sent << " messages sent, " << tally.refused
             << " refused by the kernel, " << tally.skipped << " skipped" << std::endl;
+  if (!tally.ended && std::isfinite(options.seconds)) return kExitInterrupted;
   return tally.sent == 0 && tally.refused > 0 ? kExitFailed : kExitOk;
 }
 

@@ -1,5 +1,6 @@
 // armada: the command line of the fleet.
 
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
@@ -28,6 +29,13 @@ namespace {
 
 std::string ProgramDirectory() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+}
+
+// What was printed may wait in a buffer, and a disk may be full.
+bool IsOutputWritten() {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::cerr << "armada: cannot write to standard output\n";
+  return false;
 }
 
 }  // namespace
@@ -176,5 +184,6 @@ int main(int argc, char** argv) {
   });
 
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
-  return code;
+  const bool written = IsOutputWritten();
+  return code == kExitOk && !written ? kExitFailed : code;
 }

@@ -99,8 +99,8 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
 
 }  // namespace
 
-bool ProcessExit::Succeeded() const {
-  return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == 0;
+std::optional<int> ProcessExit::Code() const {
+  return WIFEXITED(wait_status) ? std::optional(WEXITSTATUS(wait_status)) : std::nullopt;
 }
 
 std::string ProcessExit::Describe() const {

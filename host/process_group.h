@@ -27,8 +27,10 @@ struct ProcessExit {
   pid_t pid = 0;
   int wait_status = 0;  ///< as waitpid(2) gives it
 
+  /// None of one that a signal has ended.
+  std::optional<int> Code() const;
   /// True for an exit with code 0.
-  bool Succeeded() const;
+  bool Succeeded() const { return Code() == 0; }
 
   /// For people: who, the exit code or the signal, and the last lines of the log.
   std::string Describe() const;

@@ -46,7 +46,7 @@ bool ArmLoop::BringUp(const volatile std::sig_atomic_t* stop) {
   return ready;
 }
 
-void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
+bool ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   int64_t tick_ns = epoch_ns_;
   clock_->SleepUntil(tick_ns);
   heap_at_start_ = static_cast<int64_t>(HeapCounter::Allocations());
@@ -69,6 +69,7 @@ void ArmLoop::Run(int64_t end_ns, const volatile std::sig_atomic_t* stop) {
   bus_->DropWaiting();
   Send();
   ConfirmSent(clock_->Now() + period_ns_);
+  return tick_ns >= end_ns;
 }
 
 void ArmLoop::ListenUntil(int64_t time_ns) {

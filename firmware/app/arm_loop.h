@@ -36,7 +36,7 @@ class ArmLoop {
   /// then, or on `*stop`.
   bool BringUp(const volatile std::sig_atomic_t* stop);
   /// Runs ticks until `end_ns` or `*stop`, then disables the drives.
-  void Run(int64_t end_ns, const volatile std::sig_atomic_t* stop);
+  bool Run(int64_t end_ns, const volatile std::sig_atomic_t* stop);
 
   const LoopReport& report() const { return report_; }
   /// The controller's state in the last tick, before the loop put the drives to rest.

@@ -119,19 +119,20 @@ int Run(const Options& options) {
                              : "not every drive on " + entry.bus +
                                    " reached torque mode before the start: " + node->ExplainDrives());
   }
-  loop->Run(end_ns, &stop_requested);
+  const bool ended = loop->Run(end_ns, &stop_requested);
   if (!stepped) LeaveRealtime();
 
-  const auto report = [&](std::ostream& file) { WriteLoopReport(*loop, *node, *bus, *link, grant, file); };
-  if (!options.json.empty() && !WriteWhole(options.json, report, &error)) return Fail(options, error);
   const ControllerState state = loop->final_state();
-  if (state == ControllerState::kFault || state == ControllerState::kSafeStop) {
-    return Fail(options, std::string("ended in ") + NameOf(state) + ": " + NameOf(node->cause()));
-  }
-  if (!options.learned.empty() &&
+  const bool stands = state == ControllerState::kFault || state == ControllerState::kSafeStop;
+  if (!stands && !options.learned.empty() &&
       !WriteInitialState(WarmStart(entry, node->controller()), entry, options.learned, &error)) {
     return Fail(options, error);
   }
+  // The report comes last: where it is, the board has done all that it was to do.
+  const auto report = [&](std::ostream& file) { WriteLoopReport(*loop, *node, *bus, *link, grant, file); };
+  if (!options.json.empty() && !WriteWhole(options.json, report, &error)) return Fail(options, error);
+  if (!ended && options.seconds > 0.0) return kExitInterrupted;
+  if (stands) return Fail(options, std::string("ended in ") + NameOf(state) + ": " + NameOf(node->cause()));
   return kExitOk;
 }
 

@@ -54,8 +54,7 @@ ClockPage* SteppedClock::Map(int descriptor, std::string* error) {
     *error = "stepped clock: descriptor " + std::to_string(descriptor) + " is no clock page of this version";
     return nullptr;
   }
-  void* const memory =
-      mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, descriptor, 0);
+  void* const memory = mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
   if (memory != MAP_FAILED) return static_cast<ClockPage*>(memory);
   *error = std::string("stepped clock: ") + std::strerror(errno);
   return nullptr;
@@ -239,6 +238,7 @@ int64_t SteppedClock::ArrivalOf(int descriptor, const timespec& /*kernel_stamp*/
   const ClockPage::Group& group = page_->group[subscription->group];
   const uint64_t number = subscription->due++;
   if (number >= group.sent) return WallNow();  // a stranger's
+  if (group.sent - number > ClockPage::kRemembered) ++page_->forgotten;
   return group.sent_ns[number % ClockPage::kRemembered] + page_->wall_offset_ns;
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "firmware/app/exit_codes.h"
 #include "firmware/app/initial_state.h"
 #include "firmware/clock/machine_clock.h"
 #include "hil/scenario_file.h"
@@ -18,7 +19,6 @@
 #include "host/run/run_buses.h"
 #include "host/run/run_diagnosis.h"
 #include "host/run/run_evidence.h"
-#include "host/run/run_folder.h"
 #include "host/run/run_result.h"
 
 namespace armada {
@@ -31,6 +31,7 @@ using std::chrono::nanoseconds;
 constexpr int64_t kStartUpNs = 2'000'000'000;  // processes, sockets and drives are up well before
 constexpr double kOverrun_s = 5.0;             // a program that has not ended by then is stuck
 constexpr int64_t kMoment_ns = 5'000'000;      // between two looks at what goes on
+constexpr int64_t kStood_ns = 200'000'000;     // between two looks: this process stood still
 constexpr const char* kLogger = "lcm-logger";
 
 bool HasLeader(const ScenarioConfig& scenario) {
@@ -53,8 +54,9 @@ std::map<int, std::string> BoardInterfaces(const FleetConfig& fleet,
 
 }  // namespace
 
-FleetRun::FleetRun(const RunOptions& options, ScenarioConfig scenario)
+FleetRun::FleetRun(const RunOptions& options, const RunFolder& folder, ScenarioConfig scenario)
     : options_(options),
+      folder_(folder),
       scenario_(std::move(scenario)),
       lines_(options_, scenario_),
       clock_(MachineClock::Get()),
@@ -111,8 +113,10 @@ bool FleetRun::Execute(std::string* error) {
   if (heartbeat_) heartbeat_->Stop();
   ended_s_ = Now_s();
   if (faults_) faults_->KillStopped(control_.get());
-  if (stepped_) stepped_->Release();
-  group.StopAll(milliseconds(2000));
+  // Where its path leads elsewhere by now, nothing more is written there.
+  const bool may_write = folder_.IsThere();
+  if (stepped_ && may_write) stepped_->Release();
+  group.StopAll(milliseconds(may_write ? 2000 : 0));
   return done;
 }
 
@@ -154,14 +158,22 @@ bool FleetRun::StartBoard(int arm_id, bool anew, ProcessGroup* group, std::strin
 
 bool FleetRun::Start(ProcessGroup* group, const std::string& name, const std::string& log,
                      std::vector<std::string> line, std::string* error) {
+  if (!HasFolder(error)) return false;
   if (!stepped_) return group->Start({name, std::move(line), {}, In(log)}, error);
   const auto of_time = stepped_->ArgumentsFor(name);
   line.insert(line.end(), of_time.begin(), of_time.end());
   return group->Start({name, std::move(line), {}, In(log), stepped_->descriptor()}, error);
 }
 
+bool FleetRun::HasFolder(std::string* error) const {
+  if (folder_.IsThere()) return true;
+  *error = options_.out + " was moved or removed while it was written: everything is stopped";
+  return false;
+}
+
 bool FleetRun::Watch(ProcessGroup* group, std::string* error) {
-  const int64_t end_ns = At(scenario_.seconds + kOverrun_s);
+  int64_t end_ns = At(scenario_.seconds + kOverrun_s);
+  int64_t last_look_ns = clock_->Now();
   const int64_t progress_every_ns = isatty(STDOUT_FILENO) != 0 ? 200'000'000 : 5'000'000'000;
   int64_t next_progress_ns = 0;
   while (running_ > faults_->stopped_for_good()) {
@@ -174,18 +186,23 @@ bool FleetRun::Watch(ProcessGroup* group, std::string* error) {
       *error = stepped_->trouble();
       return false;
     }
+    if (!HasFolder(error)) return false;
     if (ProcessGroup::StopRequested()) {
       interrupted_ = true;
       *error = "interrupted; everything is stopped";
       return false;
     }
-    if (clock_->Now() > end_ns) {
+    // A stop of this process is nobody's delay; and who has ended is seen one after the other.
+    const int64_t now_ns = clock_->Now();
+    if (now_ns - last_look_ns > kStood_ns) end_ns += now_ns - last_look_ns;
+    last_look_ns = now_ns;
+    if (!ended && now_ns > end_ns) {
       *error = "a program is still running " + std::to_string(kOverrun_s) + " s after the end";
       return false;
     }
-    if (const int64_t now_ns = MachineClock::Get()->Now(); now_ns >= next_progress_ns) {
+    if (const int64_t machine_ns = MachineClock::Get()->Now(); machine_ns >= next_progress_ns) {
       ShowProgress();
-      next_progress_ns = now_ns + progress_every_ns;
+      next_progress_ns = machine_ns + progress_every_ns;
     }
   }
   std::printf("\n");
@@ -203,11 +220,8 @@ std::optional<ProcessExit> FleetRun::Pass(ProcessGroup* group) {
 
 // False with *error set where the run cannot go on without the program.
 bool FleetRun::NoteEnd(const ProcessExit& ended, std::string* error) {
-  // The last message of the leader is one period before the end.
-  const double last_period_s = std::max(scenario_.fleet.timing.period_s, 1.0 / scenario_.leader.rate_hz);
-  const int64_t earliest_end_ns = At(scenario_.seconds - last_period_s) - kMoment_ns;
   const bool ordered = faults_->TakeOrdered(ended);
-  if (ended.Succeeded() && !ordered && clock_->Now() < earliest_end_ns) {
+  if (ended.Code() == kExitInterrupted && !ordered) {
     *error = ended.name + " (pid " + std::to_string(ended.pid) +
              ") ended before the run did: a signal has stopped it";
     return false;
@@ -226,6 +240,7 @@ bool FleetRun::NoteEnd(const ProcessExit& ended, std::string* error) {
 
 // A board that ended in FAULT exits with 1, but has done its run and reported: that is a result, not a crash.
 bool FleetRun::FinishedItsRun(const ProcessExit& ended) const {
+  if (ended.Code() != kExitFailed) return false;
   return std::any_of(scenario_.fleet.arms.begin(), scenario_.fleet.arms.end(), [&](const ArmEntry& arm) {
     return ended.name == ProcessFaults::ArmProcess(arm.id) &&
            fs::exists(In("arm_" + std::to_string(arm.id) + ".json"));
@@ -287,6 +302,11 @@ bool FleetRun::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::s
     *error =
         std::to_string(stepped_->lost()) +
         " datagrams were sent and never arrived: this machine's network cannot carry a run in stepped time";
+    return false;
+  }
+  if (stepped_ && stepped_->forgotten() > 0) {
+    *error = std::to_string(stepped_->forgotten()) +
+             " datagrams waited for a program that was stopped for longer than their times are kept";
     return false;
   }
   if (!recorder_->WriteTraces(options_.out, !stepped_, error)) return false;

@@ -18,6 +18,7 @@
 #include "host/run/program_control.h"
 #include "host/run/run_command.h"
 #include "host/run/run_finding.h"
+#include "host/run/run_folder.h"
 #include "host/run/run_lines.h"
 #include "host/run/run_networks.h"
 #include "host/run/run_recorder.h"
@@ -29,8 +30,8 @@ namespace armada {
 /// What fails returns false and says why in `error`.
 class FleetRun {
  public:
-  /// `options` is to outlive this object.
-  FleetRun(const RunOptions& options, ScenarioConfig scenario);
+  /// `options` and `folder`, which is options.out, outlive this object.
+  FleetRun(const RunOptions& options, const RunFolder& folder, ScenarioConfig scenario);
 
   /// Networks, clock, key and inputs.
   bool Prepare(std::string* error);
@@ -50,6 +51,7 @@ class FleetRun {
   bool StartBoard(int arm_id, bool anew, ProcessGroup* group, std::string* error);
   bool Start(ProcessGroup* group, const std::string& name, const std::string& log,
              std::vector<std::string> line, std::string* error);
+  bool HasFolder(std::string* error) const;
   bool OpenLcmLog(ProcessGroup* group, std::string* error);
   bool Watch(ProcessGroup* group, std::string* error);
   std::optional<ProcessExit> Pass(ProcessGroup* group);
@@ -66,6 +68,7 @@ class FleetRun {
   int64_t At(double seconds) const { return epoch_ns_ + static_cast<int64_t>(seconds * 1e9); }
 
   const RunOptions& options_;
+  const RunFolder& folder_;
   ScenarioConfig scenario_;
   RunLines lines_;
   RunNetworks networks_;                  // before what uses them: removed last

@@ -83,7 +83,7 @@ int RunRunCommand(const RunOptions& options) {
   }
   std::cout << scenario->name << ": " << scenario->fleet.arms.size() << " arms, " << scenario->seconds
             << " s, seed " << options.seed << ", into " << options.out << std::endl;
-  FleetRun run(options, std::move(*scenario));
+  FleetRun run(options, *folder, std::move(*scenario));
   RunMetrics metrics;
   nlohmann::ordered_json json;
   if (!run.Prepare(&error) || !run.Execute(&error) || !run.Collect(&metrics, &json, &error)) {

@@ -115,11 +115,15 @@ std::unique_ptr<RunFolder> RunFolder::Take(const std::string& directory, bool* i
     unlink(path.c_str());
     return nullptr;
   }
-  return std::unique_ptr<RunFolder>(new RunFolder(std::move(lock), janitor));
+  return std::unique_ptr<RunFolder>(new RunFolder(path, std::move(lock), janitor));
 }
 
 RunFolder::~RunFolder() {
   pclose(janitor_);
+}
+
+bool RunFolder::IsThere() const {
+  return IsNamed(lock_.get(), path_);
 }
 
 void RunFolder::KeepAcrossExec() {
@@ -131,7 +135,7 @@ void EmptyRunFolder(const std::string& directory) {
   const fs::path folder = directory;
   std::error_code ignored;
   for (const char* name : {"metrics.json", "hil.json", "report.html", "timing.csv", "leader.csv", "lcm.log",
-                           "report", "without_subtask", "fleet.key", "state"}) {
+                           "report", "without_subtask", "fleet.key", "state", "learned"}) {
     fs::remove_all(folder / name, ignored);
   }
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {

@@ -22,12 +22,17 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
   ~RunFolder();
 
+  /// Whether its path still leads to it: who moves or removes a folder gives its path to others.
+  bool IsThere() const;
+
   /// A program that takes the place of this one (execve) keeps the folder.
   void KeepAcrossExec();
 
  private:
-  RunFolder(UniqueFd lock, FILE* janitor) : lock_(std::move(lock)), janitor_(janitor) {}
+  RunFolder(std::string path, UniqueFd lock, FILE* janitor)
+      : path_(std::move(path)), lock_(std::move(lock)), janitor_(janitor) {}
 
+  std::string path_;  ///< of the lock
   UniqueFd lock_;
   FILE* janitor_;
 };

@@ -8,11 +8,11 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 #include <new>
 
 #include "firmware/clock/monotonic.h"
+#include "host/run/watched_program.h"
 
 namespace armada {
 namespace {
@@ -23,31 +23,12 @@ constexpr int64_t kStart_ns = 1000 * kNsPerS;                 // as of a machine
 constexpr int64_t kWallAtStart_ns = 1'767'225'600 * kNsPerS;  // 2026-01-01 00:00:00 UTC: the same in each run
 constexpr int64_t kTold_ns = 900'000'000;                     // of one turn, on the machine's clock
 constexpr int64_t kHung_cpu_ns = 900'000'000;                 // of one turn, on its own processor time
-constexpr int64_t kHung_ns = 30 * kNsPerS;                    // of one turn, neither stopped nor computing
+constexpr int64_t kHung_ns = 30 * kNsPerS;                    // asleep in its turn, or not ending
 constexpr int64_t kPatience_ns = 60 * kNsPerS;                // for a program to come up
 
 int64_t ProcessorTime(pid_t pid) {
   clockid_t clock{};
   return clock_getcpuclockid(pid, &clock) == 0 ? Now_ns(clock) : 0;
-}
-
-// R, S, D, T, .. of proc(5); after the name, which may have anything in it.
-char StateOf(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string line;
-  std::getline(file, line);
-  const size_t end = line.rfind(')');
-  return end != std::string::npos && end + 2 < line.size() ? line[end + 2] : '?';
-}
-
-// For people: who, and what keeps it.
-std::string Describe(const std::string& program, pid_t pid) {
-  const char state = StateOf(pid);
-  const char* const what = state == 'T' || state == 't'                   ? "stopped by a signal"
-                           : state == 'Z' || state == 'X' || state == '?' ? "dead"
-                           : state == 'S' || state == 'D'                 ? "asleep"
-                                                          : "at work or waiting for a processor";
-  return program + " (pid " + std::to_string(pid) + ", " + what + ")";
 }
 
 std::string Seconds(int64_t duration_ns) {
@@ -106,6 +87,7 @@ bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
   const int64_t begin_ns = Now_ns(CLOCK_MONOTONIC);
   bool told = false;
   for (size_t i = 0; i < programs_.size(); ++i) {
+    Patience patience(Now_ns(CLOCK_MONOTONIC));
     while (running_[i] && page()->slot[i + 1].state == State::kAbsent) {
       const auto ended = group->Poll(milliseconds(1));
       if (ended && !NoteEnd(*ended)) {
@@ -116,10 +98,12 @@ bool SteppedTime::AwaitPrograms(ProcessGroup* group, std::string* error) {
         *error = "interrupted; everything is stopped";
         return false;
       }
-      const int64_t since_ns = Now_ns(CLOCK_MONOTONIC) - begin_ns;
-      if (since_ns < kTold_ns || ended) continue;
-      const std::string who = Describe(programs_[i], group->Find(programs_[i]).value_or(0));
-      if (since_ns > kPatience_ns) {
+      const int64_t now_ns = Now_ns(CLOCK_MONOTONIC);
+      const pid_t pid = group->Find(programs_[i]).value_or(0);
+      const int64_t waited_ns = patience.Look(pid, now_ns);
+      if (now_ns - begin_ns < kTold_ns || ended) continue;
+      const std::string who = Describe(programs_[i], pid);
+      if (waited_ns > kPatience_ns) {
         *error = "has not come up within " + Seconds(kPatience_ns) + ": " + who;
         return false;
       }
@@ -145,16 +129,20 @@ std::optional<ProcessExit> SteppedTime::Pass(ProcessGroup* group, std::span<poll
                                              int64_t until_ns) {
   group_ = group;
   const int64_t begin_ns = Now_ns(CLOCK_MONOTONIC);
+  Patience patience(begin_ns);
   for (bool told = false;
        AwaitsAnEnd() && ended_.empty() && trouble_.empty() && !ProcessGroup::StopRequested();) {
     if (const auto ended = group->Poll(milliseconds(50))) NoteEnd(*ended);
-    const int64_t since_ns = Now_ns(CLOCK_MONOTONIC) - begin_ns;
-    if (since_ns < kTold_ns || !AwaitsAnEnd()) continue;
-    const std::string who = Describe(WhoseEndIsAwaited(), group->Find(WhoseEndIsAwaited()).value_or(0));
+    if (!AwaitsAnEnd()) continue;
+    const int64_t now_ns = Now_ns(CLOCK_MONOTONIC);
+    const pid_t pid = group->Find(WhoseEndIsAwaited()).value_or(0);
+    const int64_t waited_ns = patience.Look(pid, now_ns);
+    if (now_ns - begin_ns < kTold_ns) continue;
+    const std::string who = Describe(WhoseEndIsAwaited(), pid);
     if (!told) std::cerr << "armada run: waiting for the end of " << who << std::endl;
     told = true;
-    if (since_ns > kHung_ns)
-      trouble_ = who + " has left the run " + Seconds(since_ns) + " ago and does not end";
+    if (waited_ns > kHung_ns)
+      trouble_ = who + " has left the run " + Seconds(now_ns - begin_ns) + " ago and does not end";
   }
   if (ended_.empty() && trouble_.empty()) Wait(inputs, until_ns);
   if (ended_.empty()) return std::nullopt;
@@ -187,17 +175,17 @@ bool SteppedTime::HolderGetsOn() {
   if (page()->turns != turn_) {
     turn_ = page()->turns;
     turn_since_ns_ = now_ns;
+    turn_patience_ = Patience(now_ns);
     turn_cpu_ns_ = ProcessorTime(pid);
     told_ = false;
     return true;
   }
   const int64_t since_ns = now_ns - turn_since_ns_;
+  const int64_t waited_ns = turn_patience_.Look(pid, now_ns);
   if (since_ns < kTold_ns) return true;
-  const char state = StateOf(pid);
   const int64_t cpu_ns = ProcessorTime(pid) - turn_cpu_ns_;
-  const bool sleeps = state == 'S' || state == 'D';
   const std::string& program = programs_[holder - 1];
-  if (cpu_ns > kHung_cpu_ns || (sleeps && since_ns > kHung_ns)) {
+  if (cpu_ns > kHung_cpu_ns || (waited_ns > kHung_ns && DoingOf(pid) == Doing::kAsleep)) {
     char at[32];
     std::snprintf(at, sizeof at, "%.3f", stepped_s());
     trouble_ = program + " (pid " + std::to_string(pid) + ") hangs: its turn at " + at +

@@ -9,6 +9,7 @@
 #include "firmware/clock/stepped_clock.h"
 #include "firmware/unique_fd.h"
 #include "host/process_group.h"
+#include "host/run/watched_program.h"
 
 namespace armada {
 
@@ -49,6 +50,8 @@ class SteppedTime final : public SteppedClock {
   /// Datagrams that came late or never: what was run is then not what another run would be.
   uint64_t late() const { return page()->late; }
   uint64_t lost() const { return page()->lost; }
+  /// That waited so long to be read that when they were sent is forgotten.
+  uint64_t forgotten() const { return page()->forgotten; }
   uint64_t dropped() const { return page()->dropped; }
   uint64_t strangers() const { return page()->strangers; }
 
@@ -75,6 +78,7 @@ class SteppedTime final : public SteppedClock {
   uint64_t turn_ = 0;
   int64_t turn_since_ns_ = 0;
   int64_t turn_cpu_ns_ = 0;
+  Patience turn_patience_{0};
   bool told_ = false;
 };
 

@@ -13,6 +13,6 @@ expect() {
   shift 2
   "$@" >"$work/out" 2>&1
   local got=$?
-  [ "$got" = "$code" ] || fail "exit code $got, not $code: $*: $(cat "$work/out")"
+  [[ "$got" =~ ^($code)$ ]] || fail "exit code $got, not $code: $*: $(cat "$work/out")"
   grep -qE -- "$pattern" "$work/out" || fail "no line matches '$pattern': $*: $(cat "$work/out")"
 }

@@ -76,6 +76,18 @@ TEST_F(RunFolderTest, NothingStaysBehindOfAProcessThatIsKilled) {
   close(ready[1]);
 }
 
+TEST_F(RunFolderTest, WhoMovesAFolderTakesItFromItsRun) {
+  const auto folder = Take();
+  ASSERT_NE(folder, nullptr) << error_;
+  EXPECT_TRUE(folder->IsThere());
+  fs::rename(folder_, folder_ + " elsewhere");
+  EXPECT_FALSE(folder->IsThere());
+  const auto next = Take();
+  ASSERT_NE(next, nullptr) << error_;
+  EXPECT_FALSE(folder->IsThere()) << "another's, of the same path";
+  EXPECT_TRUE(next->IsThere());
+}
+
 // A shell's cd looks elsewhere first when CDPATH says so, and takes "-" for the folder before.
 TEST_F(RunFolderTest, WhatIsRemovedAtTheEndIsNeverInAnotherFolder) {
   const fs::path elsewhere = temp_.path() / "elsewhere";

@@ -44,6 +44,7 @@ says() { # says NAME PATTERN
 left_behind() {
   pgrep -f "$work/$1( |/|$)" || find "$work/$1" -type p -o -name run.lock | grep .
 }
+programs_ended() { ! pgrep -f "$work/$1/(fleet|scenario).toml" >/dev/null; }
 nothing_left() { ! left_behind "$1" >/dev/null; }
 
 # A second run in the same folder is refused and touches nothing; one in another folder has a network of its own.
@@ -86,6 +87,63 @@ says killed '^armada run: arm 2 .pid [0-9]+. was ended by signal 9 .SIGKILL.'
 says killed '^  the run broke off at [0-9.]+ s( before the start)?: arm 2'
 [ ! -e "$work/killed/metrics.json" ] || fail "a run that broke off has a result"
 wait_for 5 nothing_left killed || fail "a killed run leaves behind: $(left_behind killed)"
+
+# A board that cannot leave what it learnt has not done its run.
+start unlearnt 4
+rm -rf "$work/unlearnt/learned" && : >"$work/unlearnt/learned"
+ended 1 unlearnt
+says unlearnt '^armada run: arm [0-9] .*exited with code 1'
+says unlearnt 'unlearnt/learned/arm_[0-9].toml'
+[ ! -e "$work/unlearnt/metrics.json" ] || fail "a run without all of its results has a result"
+
+# Who moves a run's folder ends it; what then has its name stays as it is.
+start moved 20
+wait_for 20 grep -q 'arms on' "$work/moved/hil.txt" || fail "no emulation: $(cat "$work/moved/hil.txt")"
+mv "$work/moved" "$work/elsewhere" && mkdir "$work/moved" && echo kept >"$work/moved/kept"
+ended 1 moved
+says moved 'moved was moved or removed while it was written: everything is stopped'
+[ "$(ls "$work/moved")" = kept ] || fail "a run writes into another's folder: $(ls "$work/moved")"
+
+# A run whose programs were stopped by somebody else, alone, and at its end: they have ended, that is all.
+start late 4
+kill -STOP "$run"
+wait_for 30 programs_ended late || fail "the programs do not end"
+sleep 6
+kill -CONT "$run"
+ended '0 1' late
+[ -s "$work/late/metrics.json" ] || fail "a run that saw its programs' end late: $(cat "$work/late.txt")"
+
+# Programs that have an end and do not reach it say so.
+stops_early() { # stops_early PROGRAM WORD ARGUMENT...: stopped when it has said WORD
+  local program=$1 word=$2
+  shift 2
+  : >"$work/early.txt"
+  "$(dirname "$armada")/$program" "$@" >"$work/early.txt" 2>&1 &
+  local early=$!
+  wait_for 20 grep -q -- "$word" "$work/early.txt" || fail "$program does not begin: $(cat "$work/early.txt")"
+  kill "$early"
+  wait "$early"
+  [ $? = 130 ] || fail "$program, stopped before its end: $(cat "$work/early.txt")"
+}
+stops_early armada-hil 'arms on' "$scenario" --seconds 60
+stops_early armada-leader epoch "$scenario" --seconds 60 --state "$work/state"
+
+# Where there are no namespaces, an unpaced run says what it hears.
+if unshare -r true 2>/dev/null; then
+  expect '[01]' 'note: .*: what others send on udpm://[0-9.:]+.* is heard by this run' \
+    unshare -r sh -c 'echo 0 >/proc/sys/user/max_user_namespaces; echo 0 >/proc/sys/user/max_net_namespaces; exec "$@"' sh \
+    "$armada" run "$scenario" --time stepped --pace 0 --seconds 0.5 --set window_start_s=0.1 --out "$work/unpaced"
+else
+  echo "note: no user namespaces: nothing to forbid"
+fi
+
+# A table that nobody can read is no result.
+if [ -c /dev/full ]; then
+  "$armada" run "$scenario" --time stepped --pace 0 --seconds 0.5 --set window_start_s=0.1 --out "$work/unread" \
+    >/dev/full 2>"$work/unread.txt"
+  [ $? = 1 ] || fail "a run that cannot print its result succeeds"
+  says unread 'cannot write to standard output'
+fi
 
 # A disk that gets full. The file system is seen by this part only.
 run_on_small_disk() { # run_on_small_disk SIZE

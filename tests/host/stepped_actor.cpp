@@ -6,6 +6,7 @@
 //   read PERIOD UNTIL    sleeps, and takes every PERIOD what has come; logs when it came
 //   die AT | hang AT     does so
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -41,7 +42,7 @@ class Actor {
   }
 
  private:
-  int64_t Number(int index) const { return begin_ns_ + std::stoll(words_[3 + index]) * kMs; }
+  int64_t Number(int index) const { return begin_ns_ + std::llround(std::stod(words_[3 + index]) * kMs); }
   void Log(const char* what, uint32_t number, int64_t at_ns) {
     std::fprintf(log_, "%.3f %s %u %.3f\n", static_cast<double>(clock_->Now() - begin_ns_) / kMs, what,
                  number, static_cast<double>(at_ns - begin_ns_) / kMs);
@@ -49,6 +50,7 @@ class Actor {
   void Send(uint32_t number) {
     CanFrame frame;
     frame.id = number;
+    frame.extended = true;
     if (bus_->Send(frame) != BusStatus::kOk) std::abort();
   }
 

@@ -25,6 +25,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 class SteppedTimeTest : public PrivateNetworkTest {
  protected:
@@ -147,6 +148,20 @@ TEST_F(SteppedTimeTest, AProgramWithoutTurnsFindsLaterWhatHasCome) {
   PassUntil(100);
   EXPECT_EQ(LogOf("answerer"),
             "10.000 answered 0 10.000\n25.000 answered 1 20.000\n30.000 answered 2 30.000\n");
+}
+
+// A full socket keeps what came first, however much was sent since.
+TEST_F(SteppedTimeTest, WhatWaitedLongKeepsItsTime) {
+  Begin();
+  Start("speaker", {"speak", "0.25", "3000"});
+  Start("reader", {"read", "800", "800"});
+  Await();
+  for (const ProcessExit& ended : PassUntil(900)) EXPECT_TRUE(ended.Succeeded()) << ended.Describe();
+  const std::string log = LogOf("reader");
+  EXPECT_THAT(log, StartsWith("800.000 read 0 0.250\n800.000 read 1 0.500\n"));
+  EXPECT_THAT(log, HasSubstr("\n800.000 read 99 25.000\n"));
+  EXPECT_GT(time_->dropped(), 1u);
+  EXPECT_EQ(time_->lost() + time_->forgotten(), 0u);
 }
 
 TEST_F(SteppedTimeTest, AProgramThatIsKilledOnOrderLeavesTheOthersAlone) {
