@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs clang-tidy over the project's own sources, and only over those that changed since they last passed.
 
-usage: cached_clang_tidy.py CACHE_DIR BUILD_DIR...
+usage: cached_clang_tidy.py [--alone] CACHE_DIR BUILD_DIR...
 
 Each BUILD_DIR is an up-to-date Ninja build with compile_commands.json; a source is checked as the first build that has
 it compiles it, alone or in a batch of CMake's, but without the compiler's precompiled headers.
@@ -14,10 +14,11 @@ that does not pass, or does not compile as one, is halved, so that what is repor
 What a batch is known to hide, as other code comes before a source's own: unused constants at file scope, `#pragma once` in
 a source, bugprone-forward-declaration-namespace and bugprone-argument-comment where another source declares the same name,
 what stands under a macro that another source defines or undefines, using-declarations of the global namespace or of
-several names, and faults in a source that all others include (cmake/headers.cpp).
+several names, and faults in a source that all others include (cmake/headers.cpp). With --alone there are no batches, and
+nothing is hidden but the last; it takes ten times as long.
 
-A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: its compile
-command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read
+A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: this script, its
+compile command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read
 for it, or for the headers of its batch (Ninja's record). Findings go to standard error, exit code 1.
 """
 
@@ -104,8 +105,8 @@ class Batch:
     def flags(self):
         return [*self.kind, *(f"-D{name}={value}" for name, value in self.macros.items()), *self.folders]
 
-    def takes(self, kind, names, macros):
-        return (kind == self.kind and len(self.sources) < BATCH and not names & self.names and
+    def takes(self, kind, names, macros, most):
+        return (kind == self.kind and len(self.sources) < most and not names & self.names and
                 all(self.macros.get(name, value) == value for name, value in macros.items()))
 
     def add(self, source, names, macros, folders):
@@ -132,12 +133,12 @@ def parts_of(flags):
     return tuple(kind), macros, folders
 
 
-def in_batches(sources, flags):
+def in_batches(sources, flags, most):
     batches = []
     for source in sources:
         kind, macros, folders = parts_of(flags[source])
         names = names_at_file_scope(source)
-        batch = next((batch for batch in batches if batch.takes(kind, names, macros)), None)
+        batch = next((batch for batch in batches if batch.takes(kind, names, macros, most)), None)
         if not batch:
             batch = Batch(kind)
             batches.append(batch)
@@ -146,7 +147,8 @@ def in_batches(sources, flags):
 
 
 def main():
-    cache, *builds = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    most = 1 if "--alone" in sys.argv else BATCH
+    cache, *builds = (pathlib.Path(argument).resolve() for argument in sys.argv[1:] if argument != "--alone")
     cache.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True, text=True).stdout
     flags = own_sources(builds)
@@ -155,7 +157,7 @@ def main():
     def passed_marker(source):
         configs = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
         inputs = [config for config in configs if config.exists()] + read[source]
-        parts = [version, *flags[source]] + [f"{path} {digest(path)}" for path in inputs]
+        parts = [version, digest(pathlib.Path(__file__)), str(most), *flags[source]] + [f"{path} {digest(path)}" for path in inputs]
         return cache / hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
     def tidy(file, flags_of_file, *options):
@@ -205,8 +207,9 @@ def main():
                 print(f"\r\033[Kclang-tidy {done}/{len(changed)}", end="\r", file=sys.stderr)
         return findings
 
+    batches = in_batches(changed, flags, most)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        findings = sum(pool.map(lambda batch: check(batch.sources, batch.flags), in_batches(changed, flags)))
+        findings = sum(pool.map(lambda batch: check(batch.sources, batch.flags), batches))
     print(f"{len(flags)} files, {len(changed)} checked, the others unchanged")
     return 1 if findings else 0
 
