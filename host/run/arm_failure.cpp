@@ -5,6 +5,7 @@
 #include "firmware/core/cause.h"
 #include "host/number_format.h"
 #include "host/run/board_lateness.h"
+#include "host/run/failure_moment.h"
 
 namespace armada {
 namespace {
@@ -100,11 +101,13 @@ std::string LateText(const RunEvidence& evidence, size_t index, double from_s, d
 }
 
 // What was late or lost on the board at that moment; where nothing was, before it; empty: nothing ever.
-std::string MomentText(const RunEvidence& evidence, size_t index, double at_s) {
-  const std::string off = DrivesOff(evidence.arms[index].bench, at_s);
-  std::string late = LateText(evidence, index, at_s - kMoment_s, at_s + kTelling_s);
+std::string MomentText(const RunEvidence& evidence, size_t index, const Moment& moment) {
+  // In its last tick a board puts its drives to rest.
+  const double rest_s = evidence.scenario->seconds - 1.5 * evidence.scenario->fleet.timing.period_s;
+  const std::string off = DrivesOff(evidence.arms[index].bench, std::min(moment.to_s, rest_s));
+  std::string late = LateText(evidence, index, moment.from_s, moment.to_s + kTelling_s);
   if (late.empty()) {
-    late = LateText(evidence, index, -kMoment_s, at_s);
+    late = LateText(evidence, index, -kMoment_s, moment.to_s);
     if (!late.empty()) late = "before: " + late;
   }
   return off.empty() || late.empty() ? off + late : off + "; " + late;
@@ -135,19 +138,26 @@ std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index) {
   if (words.empty()) return std::nullopt;
 
   const double last_s = evidence.TimeOf(ticks.back().stamp_ns);
-  const double moment_s = words.at_s().value_or(last_s);
   std::string text = name + words.text();
   bool in_time = false;
   const double end_s = arm == nullptr ? evidence.broke_off_s : evidence.scenario->seconds;
   const bool silent = last_s < end_s - kMoment_s;
   if (silent) text += "; last heard at " + TimeText(last_s);
-  if (const std::string late = MomentText(evidence, index, moment_s); !late.empty()) {
+  const std::string late = MomentText(evidence, index, MomentOf(evidence, words.at_s()));
+  if (!late.empty()) {
     text += "; " + late;
   } else if (!silent) {
     text += "; nothing was late or lost on its board before";
     in_time = true;
   }
-  return ArmFailure{{words.kind(), id, moment_s, text}, in_time};
+  return ArmFailure{{words.kind(), id, words.at_s(), text}, in_time};
+}
+
+std::optional<RunFinding> LatenessOf(const RunEvidence& evidence, size_t index) {
+  const std::string late = MomentText(evidence, index, MomentOf(evidence, std::nullopt));
+  if (late.empty()) return std::nullopt;
+  const int id = evidence.scenario->fleet.arms[index].id;
+  return RunFinding{"late", id, std::nullopt, "arm " + std::to_string(id) + ": " + late};
 }
 
 std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index) {

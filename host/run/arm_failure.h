@@ -8,9 +8,6 @@
 
 namespace armada {
 
-/// So long before a failure shows, what was late or lost is of that moment.
-inline constexpr double kMoment_s = 1.0;
-
 /// What an arm misses of the criterion.
 struct ArmFailure {
   RunFinding finding;    ///< what, when, and what was late or lost on its board at that moment
@@ -19,6 +16,10 @@ struct ArmFailure {
 
 /// None of an arm that misses nothing. Of a run that broke off: whether it has stopped or was never heard.
 std::optional<ArmFailure> FailureOf(const RunEvidence& evidence, size_t index);
+
+/// What was late or lost on the arm's board in the window of the criterion, or where nothing was then, before
+/// it: of an arm whose fleet misses the criterion. None when nothing was.
+std::optional<RunFinding> LatenessOf(const RunEvidence& evidence, size_t index);
 
 /// What the arm's board lost in the whole run; none when it lost nothing, or has left no report.
 std::optional<RunFinding> LossesOf(const RunEvidence& evidence, size_t index);

@@ -45,7 +45,8 @@ BoardLateness LatenessBetween(std::span<const telemetry_t> ticks, double period_
     Widen(&lateness.sample_to_torque_s, 1e-6 * tick.sample_to_torque_us, at_s);
     const int64_t last_ns = i == 0 ? epoch_ns : ticks[i - 1].stamp_ns;
     const double since_last_s = 1e-9 * static_cast<double>(tick.stamp_ns - last_ns);
-    Widen(&lateness.silent_s, since_last_s - static_cast<double>(missed) * period_s, at_s);
+    const int64_t unheard = tick.sequence - last.sequence - 1;
+    Widen(&lateness.silent_s, since_last_s - static_cast<double>(missed + unheard) * period_s, at_s);
     lateness.can_dropped += tick.can_dropped - last.can_dropped;
     lateness.lcm_rejected += tick.lcm_rejected - last.lcm_rejected;
   }

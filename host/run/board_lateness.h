@@ -20,7 +20,7 @@ struct BoardLateness {
   double missed_at_s = 0.0;    ///< of the most at once
   Largest wakeup_s;            ///< how late it woke
   Largest sample_to_torque_s;  ///< from the request for samples to the last torque on the wire
-  Largest silent_s;            ///< without a word of it that could be heard, its missed ticks left out
+  Largest silent_s;            ///< without a tick of it, be it heard, missed or lost on the way here
   int64_t can_dropped = 0;
   int64_t lcm_rejected = 0;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "hil/fault_meaning.h"
 #include "host/run/board_lateness.h"
@@ -13,21 +14,30 @@ double Length_s(const Stall& stall) {
   return 1e-9 * static_cast<double>(stall.end_ns - stall.begin_ns);
 }
 
-// Whether the boards ticked throughout: without a pause of half the stall. Too short a stall tells nothing.
+// Whether the board ticked in more than half of the stall. Its own count of missed ticks tells, also where
+// its messages were lost meanwhile; a board that was started anew tells nothing.
+bool WentOn(std::span<const telemetry_t> ticks, const Stall& stall, int64_t period_ns) {
+  const auto first_from = [&](int64_t at_ns) {
+    return std::lower_bound(ticks.begin(), ticks.end(), at_ns,
+                            [](const telemetry_t& tick, int64_t t_ns) { return tick.stamp_ns < t_ns; });
+  };
+  const auto first = first_from(stall.begin_ns);
+  if (first == ticks.begin() || first == ticks.end()) return false;
+  const auto after = first_from(stall.end_ns);
+  const telemetry_t& before = *(first - 1);
+  const telemetry_t& last = after == ticks.end() ? ticks.back() : *after;
+  if (last.sequence <= before.sequence) return false;
+  const int64_t missed_ns = period_ns * (last.missed_ticks - before.missed_ticks);
+  const int64_t ticked_ns = std::min(last.stamp_ns, stall.end_ns) - stall.begin_ns - missed_ns;
+  return 2 * ticked_ns > stall.end_ns - stall.begin_ns;
+}
+
+// Too short a stall tells nothing.
 bool BoardsWentOn(const RunEvidence& evidence, const Stall& stall) {
   const auto period_ns = static_cast<int64_t>(1e9 * evidence.scenario->fleet.timing.period_s);
-  const int64_t length_ns = stall.end_ns - stall.begin_ns;
-  if (length_ns < 4 * period_ns) return false;
-  std::vector<int64_t> ticks_ns = {stall.begin_ns, stall.end_ns};
-  for (const RunEvidence::Arm& arm : evidence.arms) {
-    for (const telemetry_t& tick : arm.ticks) {
-      if (tick.stamp_ns > stall.begin_ns && tick.stamp_ns < stall.end_ns) ticks_ns.push_back(tick.stamp_ns);
-    }
-  }
-  std::sort(ticks_ns.begin(), ticks_ns.end());
-  int64_t pause_ns = 0;
-  for (size_t i = 1; i < ticks_ns.size(); ++i) pause_ns = std::max(pause_ns, ticks_ns[i] - ticks_ns[i - 1]);
-  return 2 * pause_ns < length_ns;
+  if (stall.end_ns - stall.begin_ns < 4 * period_ns) return false;
+  return std::any_of(evidence.arms.begin(), evidence.arms.end(),
+                     [&](const RunEvidence::Arm& arm) { return WentOn(arm.ticks, stall, period_ns); });
 }
 
 std::string StallText(const RunEvidence& evidence, const Stall& stall) {
@@ -55,8 +65,35 @@ RunFinding FaultFinding(int arm_id, double at_s, const std::string& what) {
   return {"fault", arm_id, at_s, what + " at " + TimeText(at_s) + ", as was ordered"};
 }
 
+// Whether the leader was stopped or killed then, as was ordered: about when it was last heard, or later.
+bool WasOrdered(const RunEvidence& evidence, const Silence& silence) {
+  const double begin_s = silence.begin_s - 1.0 / evidence.scenario->leader.rate_hz;
+  return std::any_of(evidence.faults_made.begin(), evidence.faults_made.end(),
+                     [&](const ProcessFaults::Made& made) {
+                       return made.to == ProcessFaults::kLeaderProcess && made.made_s > begin_s &&
+                              made.made_s < silence.end_s;
+                     });
+}
+
 std::string OfArm(int arm_id) {
   return arm_id == 0 ? "" : ", arm " + std::to_string(arm_id) + ",";
+}
+
+std::optional<RunFinding> LeaderFinding(const RunEvidence& evidence, std::span<const Moment> moments) {
+  std::vector<Silence> silences = evidence.leader_silences;
+  std::erase_if(silences, [&](const Silence& silence) { return WasOrdered(evidence, silence); });
+  const auto longest =
+      std::max_element(silences.begin(), silences.end(), [&](const Silence& a, const Silence& b) {
+        const auto rank = [&](const Silence& s) {
+          return std::pair(IsOf(moments, s.begin_s, s.end_s), s.end_s - s.begin_s);
+        };
+        return rank(a) < rank(b);
+      });
+  if (longest == silences.end()) return std::nullopt;
+  char text[64];
+  std::snprintf(text, sizeof text, "the leader was not heard for %.3f s until ",
+                longest->end_s - longest->begin_s);
+  return RunFinding{"leader", 0, longest->end_s, text + TimeText(longest->end_s)};
 }
 
 }  // namespace
@@ -103,8 +140,9 @@ std::vector<RunFinding> StallFindings(const RunEvidence& evidence, std::vector<S
   return findings;
 }
 
-std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence) {
+std::vector<RunFinding> ProgramFindings(const RunEvidence& evidence, std::span<const Moment> moments) {
   std::vector<RunFinding> findings;
+  if (auto leader = LeaderFinding(evidence, moments)) findings.push_back(std::move(*leader));
   bool has_priority = true;
   const auto look = [&](const Json& program) {
     if (program.is_object() && !program.at("timing").at("realtime_priority").get<bool>())

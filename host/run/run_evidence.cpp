@@ -32,6 +32,7 @@ RunEvidence GatherEvidence(const ScenarioConfig& scenario, uint64_t seed, int64_
   evidence.real_time = heartbeat != nullptr;
   if (evidence.real_time) {
     evidence.stalls = heartbeat->Stalls();
+    evidence.leader_silences = recorder.LeaderSilences();
     evidence.heartbeat_is_foremost = heartbeat->is_foremost();
     evidence.processors = heartbeat->processors();
   }

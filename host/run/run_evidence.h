@@ -33,6 +33,7 @@ struct RunEvidence {
   const RunMetrics* metrics = nullptr;  ///< none when the run broke off
   bool real_time = true;                ///< the machine's; else none of it counts
   std::vector<Stall> stalls;
+  std::vector<Silence> leader_silences;
   bool heartbeat_is_foremost = true;
   int processors = 1;
   std::vector<ProcessFaults::Made> faults_made;

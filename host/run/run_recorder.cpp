@@ -36,7 +36,7 @@ Zeta ZetaOf(const estimate_t& estimate) {
 }  // namespace
 
 RunRecorder::RunRecorder(const ScenarioConfig& scenario, int64_t epoch_ns, const FleetKey& key)
-    : scenario_(scenario), epoch_ns_(epoch_ns) {
+    : scenario_(scenario), epoch_ns_(epoch_ns), leader_seal_(key, kLeaderSender), leader_heard_ns_(epoch_ns) {
   if (scenario.leader.kind != LeaderKind::kNone) leader_.emplace(scenario.leader);
   const auto ticks = static_cast<size_t>(scenario.seconds / scenario.fleet.timing.period_s) + 100;
   for (const ArmEntry& entry : scenario.fleet.arms) {
@@ -50,6 +50,7 @@ void RunRecorder::OnMessage(const LcmMessage& message) {
   const auto index_of = [&](std::optional<int> arm_id) {
     return arm_id ? scenario_.fleet.IndexOf(*arm_id) : -1;
   };
+  heard_ns_ = message.arrival_ns;
   std::span<const uint8_t> payload = message.payload;
   const auto opens = [&](SealCheck& seal) {
     return seal.Open(message.channel, &payload) == SealVerdict::kGenuine;
@@ -64,7 +65,33 @@ void RunRecorder::OnMessage(const LcmMessage& message) {
     ArmRecord& arm = arms_[static_cast<size_t>(j)];
     estimate_t estimate;
     if (opens(arm.estimate_seal) && Decode(payload, &estimate)) arm.estimates.push_back(estimate);
+  } else if (message.channel == kLeaderChannel) {
+    leader_t leader;
+    if (opens(leader_seal_) && Decode(payload, &leader)) OnLeader(leader, message.arrival_ns);
   }
+}
+
+void RunRecorder::OnLeader(const leader_t& message, int64_t arrival_ns) {
+  const int64_t lost = std::max<int64_t>(0, message.sequence - leader_sequence_ - 1);
+  if (const auto silence = LeaderSilenceUntil(arrival_ns, lost)) leader_silences_.push_back(*silence);
+  leader_sequence_ = message.sequence;
+  leader_heard_ns_ = std::max(arrival_ns, epoch_ns_);
+}
+
+std::optional<Silence> RunRecorder::LeaderSilenceUntil(int64_t until_ns, int64_t lost) const {
+  until_ns = std::min<int64_t>(until_ns, epoch_ns_ + std::llround(1e9 * scenario_.seconds));
+  const double period_s = 1.0 / scenario_.leader.rate_hz;
+  const double silent_s =
+      1e-9 * static_cast<double>(until_ns - leader_heard_ns_) - period_s * static_cast<double>(lost);
+  if (silent_s < 3.0 * std::max(period_s, scenario_.fleet.timing.period_s)) return std::nullopt;
+  return Silence{TimeOf(until_ns) - silent_s, TimeOf(until_ns)};
+}
+
+std::vector<Silence> RunRecorder::LeaderSilences() const {
+  if (!leader_) return {};
+  std::vector<Silence> silences = leader_silences_;
+  if (const auto silence = LeaderSilenceUntil(heard_ns_, 0)) silences.push_back(*silence);
+  return silences;
 }
 
 bool RunRecorder::EveryArmHeard() const {

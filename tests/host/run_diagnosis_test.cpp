@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <sstream>
 
 #include "firmware/core/cause.h"
+#include "firmware/link/channels.h"
 
 namespace armada {
 namespace {
@@ -17,6 +19,10 @@ constexpr double kSeconds = 10.0;
 
 int64_t At(double t_s) {
   return kEpoch_ns + static_cast<int64_t>(t_s * 1e9);
+}
+
+Stall StallAt(double t_s, double length_s) {
+  return {At(t_s), At(t_s + length_s), 1, 0};
 }
 
 /// A run of two arms in which everything is in time and within the criterion; each test spoils something.
@@ -35,7 +41,7 @@ class DiagnosisTest : public testing::Test {
       std::vector<telemetry_t>& ticks = ticks_.emplace_back();
       for (int k = 0; k < 1000; ++k) {
         telemetry_t& tick = ticks.emplace_back();
-        tick.sequence = k;
+        tick.sequence = k + 1;
         tick.stamp_ns = At(0.01 * k);
         tick.state = static_cast<int8_t>(ControllerState::kRun);
         tick.cause = static_cast<int8_t>(Cause::kNone);
@@ -64,6 +70,7 @@ class DiagnosisTest : public testing::Test {
     TicksOf(id).erase(TicksOf(id).begin() + tick - count, TicksOf(id).begin() + tick);
     for (size_t k = static_cast<size_t>(tick - count); k < TicksOf(id).size(); ++k) {
       TicksOf(id)[k].missed_ticks = count;
+      TicksOf(id)[k].sequence -= count;
     }
   }
 
@@ -116,6 +123,21 @@ TEST_F(DiagnosisTest, BoardsThatWakeALittleBeforeTheHeartbeatDidNotGoOn) {
   EXPECT_THAT(Result()[0].text, HasSubstr("the machine stood still"));
 }
 
+TEST_F(DiagnosisTest, AStallInWhichMessagesOfBoardsWereLostIsNotOfTheMachine) {
+  evidence_.stalls = {{At(5.204), At(5.716), 2, 0}};
+  for (const int id : {3, 7}) TicksOf(id).erase(TicksOf(id).begin() + 540, TicksOf(id).begin() + 575);
+  EXPECT_THAT(Result()[0].text, HasSubstr("`armada run` stood still, while boards went on"));
+}
+
+TEST_F(DiagnosisTest, ABoardThatWasStartedAnewInAStallDoesNotTellThatItWentOn) {
+  evidence_.stalls = {{At(5.204), At(5.716), 2, 0}};
+  for (const int id : {3, 7}) {
+    TicksOf(id).erase(TicksOf(id).begin() + 521, TicksOf(id).begin() + 571);
+    for (size_t k = 521; k < TicksOf(id).size(); ++k) TicksOf(id)[k].sequence -= 570;
+  }
+  EXPECT_THAT(Result()[0].text, HasSubstr("the machine stood still"));
+}
+
 TEST_F(DiagnosisTest, AStallOfOneProcessorAndAHeartbeatWithoutPriorityAreCalledSo) {
   evidence_.stalls = {{At(-0.3), At(-0.25), 1, 1}};
   evidence_.heartbeat_is_foremost = false;
@@ -150,6 +172,91 @@ TEST_F(DiagnosisTest, AStallOfLongBeforeIsNoCause) {
   EXPECT_EQ(findings[0].kind, "stopped");
   EXPECT_EQ(findings[1].kind, "none");
   EXPECT_EQ(findings[2].kind, "stall");
+}
+
+TEST_F(DiagnosisTest, AStallBeforeTheFirstFailureIsTheCauseWhateverLongerOnesThereAre) {
+  Stop(3, 600, ControllerState::kHold, Cause::kTicksMissed);
+  Stop(7, 900, ControllerState::kHold, Cause::kTicksMissed);
+  evidence_.stalls = {StallAt(5.7, 0.01), StallAt(6.5, 0.3),  StallAt(7.0, 0.3),  StallAt(7.5, 0.3),
+                      StallAt(8.2, 0.04), StallAt(8.4, 0.04), StallAt(8.6, 0.04), StallAt(8.8, 0.03)};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 9u);
+  EXPECT_NEAR(*findings[0].at_s, 5.7, 1e-6);
+  EXPECT_NEAR(*findings[1].at_s, 8.2, 1e-6) << "of the later failure";
+  EXPECT_EQ(findings[4].text, "1 further stall of at most 0.030 s");
+  EXPECT_EQ(findings[5].arm_id, 3);
+  EXPECT_EQ(findings[6].arm_id, 7);
+  EXPECT_NEAR(*findings[7].at_s, 6.5, 1e-6) << "of no failure";
+  EXPECT_EQ(findings[8].text, "2 further stalls of at most 0.300 s");
+}
+
+TEST_F(DiagnosisTest, AFailureWithoutATimeIsOfTheWholeWindow) {
+  Stop(3, 800, ControllerState::kHold, Cause::kTicksMissed);
+  scenario_.criterion.standing = {7};
+  MetricsOf(7).joint_speed_max_rad_s = 2.0;
+  TicksOf(7)[550].wakeup_lateness_us = 9900;
+  evidence_.stalls = {StallAt(2.0, 0.3), StallAt(5.5, 0.2), StallAt(7.9, 0.01), StallAt(9.0, 0.2)};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 6u);
+  EXPECT_NEAR(*findings[0].at_s, 7.9, 1e-6) << "before the first failure";
+  EXPECT_NEAR(*findings[1].at_s, 5.5, 1e-6) << "in the window";
+  EXPECT_NEAR(*findings[2].at_s, 9.0, 1e-6);
+  EXPECT_EQ(findings[3].arm_id, 3);
+  EXPECT_EQ(findings[4].kind, "moved");
+  EXPECT_FALSE(findings[4].at_s);
+  EXPECT_THAT(findings[4].text, HasSubstr("; woken 9.9 ms late at 5.500 s"));
+  EXPECT_NEAR(*findings[5].at_s, 2.0, 1e-6) << "long before the window";
+}
+
+TEST_F(DiagnosisTest, OfAFleetThatMissesTheCriterionEveryBoardIsExamined) {
+  scenario_.criterion.fleet_rms_max_m = 0.001;
+  MetricsOf(3).rms_m = 0.001;
+  MetricsOf(7).rms_m = 0.002;
+  Miss(3, 432, 2);
+  TicksOf(7)[100].wakeup_lateness_us = 9900;
+  boards_[0] = {{"timing", {{"missed_ticks", 2}, {"incomplete_samples", 0}, {"unsent_ticks", 0}}},
+                {"bus",
+                 {{"can_dropped", 0},
+                  {"can_dropped_late", 0},
+                  {"can_receive_overflowed", 0},
+                  {"can_errors", 0},
+                  {"lcm_overflowed", 0},
+                  {"lcm_rejected", 0},
+                  {"lcm_heard", Json::array()}}}};
+  boards_[0]["timing"]["realtime_priority"] = true;
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 4u);
+  EXPECT_EQ(findings[0].text,
+            "fleet RMS 1.581 mm, criterion.fleet_rms_max_m is 1.000 mm; arm 7 has the largest, 2.000 mm");
+  EXPECT_EQ(findings[1].kind, "late");
+  EXPECT_EQ(findings[1].arm_id, 3);
+  EXPECT_EQ(findings[1].text, "arm 3: 2 ticks missed at 4.320 s");
+  EXPECT_EQ(findings[2].text, "arm 7: before: woken 9.9 ms late at 1.000 s");
+  EXPECT_EQ(findings[3].text, "arm 3 in the whole run: missed ticks 2");
+}
+
+TEST_F(DiagnosisTest, WhereTheFleetMissesTheCriterionAndNoBoardWasLateItIsTheController) {
+  scenario_.criterion.fleet_rms_max_m = 0.001;
+  MetricsOf(7).rms_m = 0.002;
+  for (const int id : {3, 7}) TicksOf(id).erase(TicksOf(id).begin() + 540, TicksOf(id).begin() + 575);
+  benches_[0] = {{"drives", {{{"off_s", 9.99}}}}};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 2u) << "neither messages lost on the way here nor rest at the end are lateness";
+  EXPECT_EQ(findings[0].kind, "fleet_rms");
+  EXPECT_EQ(findings[1].kind, "none");
+}
+
+TEST_F(DiagnosisTest, AnArmThatFailedInTimeIsExaminedOverTheWholeWindowWhereTheFleetMissesToo) {
+  scenario_.criterion.kind = CriterionKind::kAgreement;
+  metrics_.estimate_spread_m = 0.1;
+  MetricsOf(3).max_m = 0.0352;
+  MetricsOf(3).beyond_at_s = 6.0;
+  Miss(3, 900, 2);
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_THAT(findings[0].text, HasSubstr("nothing was late or lost on its board before"));
+  EXPECT_EQ(findings[1].kind, "agreement");
+  EXPECT_EQ(findings[2].text, "arm 3: 2 ticks missed at 9.000 s");
 }
 
 TEST_F(DiagnosisTest, AnErrorNamesTheCriterionTheTimeAndWhatWasLateThen) {
@@ -241,6 +348,42 @@ TEST_F(DiagnosisTest, LossesOfABoardAndOfTheEmulationAreTold) {
   EXPECT_EQ(findings[3].kind, "priority");
 }
 
+TEST_F(DiagnosisTest, ALeaderThatWasSilentIsNamed) {
+  Stop(3, 800, ControllerState::kHold, Cause::kLeaderLost);
+  evidence_.leader_silences = {{5.0, 5.4}, {7.894, 8.204}};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 2u) << "something was lost";
+  EXPECT_EQ(findings[1].kind, "leader");
+  EXPECT_EQ(findings[1].arm_id, 0);
+  EXPECT_NEAR(*findings[1].at_s, 8.204, 1e-9);
+  EXPECT_EQ(findings[1].text, "the leader was not heard for 0.310 s until 8.204 s")
+      << "not the longer time, which is of no failure";
+}
+
+TEST_F(DiagnosisTest, ALeaderThatWasSilentLongBeforeIsNoCause) {
+  Stop(3, 800, ControllerState::kHold, Cause::kSingular);
+  evidence_.leader_silences = {{5.0, 5.4}};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_EQ(findings[1].kind, "none");
+  EXPECT_EQ(findings[2].kind, "leader");
+}
+
+TEST_F(DiagnosisTest, ALeaderThatWasStoppedByOrderIsToldOnce) {
+  Stop(3, 800, ControllerState::kHold, Cause::kLeaderLost);
+  evidence_.faults_made = {{"stopped", "leader", 7.5, 7.5001}};
+  evidence_.leader_silences = {{7.5002, 9.99}};
+  const auto findings = Result();
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].kind, "fault");
+  EXPECT_EQ(findings[1].kind, "stopped");
+}
+
+TEST_F(DiagnosisTest, OfARunThatIsOkTheLeadersSilenceIsNotTold) {
+  evidence_.leader_silences = {{5.0, 5.4}};
+  EXPECT_TRUE(Result().empty());
+}
+
 TEST_F(DiagnosisTest, ARunThatBrokeOffNamesWhoWasNotHeard) {
   evidence_.broke_off =
       "arm 7 (pid 5) was ended by signal 9 (SIGKILL); the end of its.txt:\n  more\n  its last words";
@@ -278,6 +421,100 @@ TEST_F(DiagnosisTest, EveryMissHasAFinding) {
   std::vector<std::string> kinds;
   for (const RunFinding& finding : Result()) kinds.push_back(finding.kind);
   EXPECT_THAT(kinds, testing::UnorderedElementsAre("fleet_rms", "agreement", "moved", "none"));
+}
+
+/// A leader of 100 Hz and a board, as the recorder hears them; each test leaves some of it out.
+class LeaderSilenceTest : public testing::Test {
+ protected:
+  LeaderSilenceTest() {
+    scenario_.seconds = kSeconds;
+    scenario_.leader.axes.resize(2);
+    scenario_.fleet.arms.emplace_back().id = 3;
+  }
+
+  void Hear(std::string_view channel, double at_s, std::span<const uint8_t> payload) {
+    recorder_->OnMessage({channel, payload, At(at_s)});
+  }
+  /// From then to then, counted on.
+  void Lead(double from_s, double to_s) {
+    for (double t_s = from_s; t_s < to_s - 1e-9; t_s += 0.01) {
+      MessageBuffer buffer;
+      leader_t message{};
+      message.stamp_ns = At(t_s);
+      message.sequence = ++sequence_;
+      message.task_dim = 2;
+      Hear(kLeaderChannel, t_s, sealer_.Seal(kLeaderChannel, Encode(message, &buffer), &buffer));
+    }
+  }
+  /// Whatever is heard of others tells that the recorder still hears.
+  void HearOthersUntil(double t_s) { Hear("OTHERS", t_s, {}); }
+
+  std::vector<Silence> Silences() const { return recorder_->LeaderSilences(); }
+  void Start() { recorder_.emplace(scenario_, kEpoch_ns, key_); }
+
+  FleetKey key_{};
+  ScenarioConfig scenario_;
+  std::optional<RunRecorder> recorder_;
+  Sealer sealer_{{key_, 1}, kLeaderSender};
+  int64_t sequence_ = 0;
+};
+
+TEST_F(LeaderSilenceTest, OfALeaderThatIsHeardFromBeforeTheStartToTheEndThereIsNone) {
+  Start();
+  Lead(-1.5, -1.0);
+  Lead(-0.5, kSeconds);
+  HearOthersUntil(kSeconds + 0.5);
+  EXPECT_TRUE(Silences().empty());
+}
+
+TEST_F(LeaderSilenceTest, ALeaderThatWasStoppedIsSilentThoughItsSequenceSkipsNothing) {
+  Start();
+  Lead(0.0, 4.9);
+  Lead(5.2, kSeconds);
+  HearOthersUntil(kSeconds);
+  const auto silences = Silences();
+  ASSERT_EQ(silences.size(), 1u);
+  EXPECT_NEAR(silences[0].begin_s, 4.89, 1e-6);
+  EXPECT_NEAR(silences[0].end_s, 5.2, 1e-6);
+}
+
+TEST_F(LeaderSilenceTest, MessagesThatWereLostOnTheWayAreNoneOfIt) {
+  Start();
+  Lead(0.0, 4.9);
+  sequence_ += 30;
+  Lead(5.2, kSeconds);
+  HearOthersUntil(kSeconds);
+  EXPECT_TRUE(Silences().empty());
+}
+
+TEST_F(LeaderSilenceTest, ItLastsFromTheStartOrUntilTheEndAsLongAsAnybodyIsHeard) {
+  Start();
+  Lead(0.5, 6.0);
+  EXPECT_EQ(Silences().size(), 1u);
+  HearOthersUntil(7.0);
+  const auto silences = Silences();
+  ASSERT_EQ(silences.size(), 2u);
+  EXPECT_NEAR(silences[0].begin_s, 0.0, 1e-6);
+  EXPECT_NEAR(silences[0].end_s, 0.5, 1e-6);
+  EXPECT_NEAR(silences[1].begin_s, 5.99, 1e-6);
+  EXPECT_NEAR(silences[1].end_s, 7.0, 1e-6);
+}
+
+TEST_F(LeaderSilenceTest, WhatComesAfterTheEndIsOfNoRun) {
+  Start();
+  Lead(0.0, kSeconds - 0.2);
+  Lead(kSeconds + 0.5, kSeconds + 0.505);
+  HearOthersUntil(kSeconds + 2.0);
+  const auto silences = Silences();
+  ASSERT_EQ(silences.size(), 1u);
+  EXPECT_NEAR(silences[0].end_s, kSeconds, 1e-6);
+}
+
+TEST_F(LeaderSilenceTest, WithoutALeaderThereIsNone) {
+  scenario_.leader.kind = LeaderKind::kNone;
+  Start();
+  HearOthersUntil(7.0);
+  EXPECT_TRUE(Silences().empty());
 }
 
 TEST_F(DiagnosisTest, FindingsArePrintedALineEachAndWrittenAsObjects) {
