@@ -254,9 +254,11 @@ std::vector<ProcessExit> ProcessGroup::StopAll(Duration grace) {
       }
     } while (exit);
   };
-  SignalAll(SIGTERM);
-  SignalAll(SIGCONT);  // a suspended program could not act on the request
-  collect_until(Clock::now() + grace);
+  if (grace > Duration::zero()) {
+    SignalAll(SIGTERM);
+    SignalAll(SIGCONT);  // a suspended program could not act on the request
+    collect_until(Clock::now() + grace);
+  }
   SignalAll(SIGKILL);
   collect_until(Clock::time_point::max());
   return exits;

@@ -73,7 +73,7 @@ class ProcessGroup {
   bool Signal(const std::string& name, int signal_number) const;
 
   /// Asks all programs to end (SIGTERM), kills after `grace` those that have not, and tells how each one
-  /// ended.
+  /// ended. Without grace they are not asked.
   std::vector<ProcessExit> StopAll(Duration grace);
 
   /// True once SIGINT, SIGTERM or SIGHUP has arrived at the living object.

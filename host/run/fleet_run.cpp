@@ -325,6 +325,7 @@ bool FleetRun::Collect(RunMetrics* metrics, nlohmann::ordered_json* json, std::s
   RunEvidence evidence = GatherEvidence(scenario_, options_.seed, epoch_ns_, *recorder_, &*faults_,
                                         heartbeat_ ? &*heartbeat_ : nullptr, options_.out);
   evidence.metrics = metrics;
+  evidence.started_s = started_s_;
   findings_ = Diagnose(evidence);
   (*json)["diagnosis"] = ToJson(findings_);
   if (!WriteJson(*json, In("metrics.json"), error)) return false;

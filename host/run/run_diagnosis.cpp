@@ -160,8 +160,8 @@ std::vector<RunFinding> Diagnose(const RunEvidence& evidence) {
   const std::vector<RunFinding> programs = ProgramFindings(evidence, moments);
   if (!from_outside && boards.in_time && InTime(evidence, programs, moments))
     findings.push_back({"none", 0, std::nullopt, NothingLate(evidence)});
-  Append(std::move(boards.losses), &findings);
   Append(programs, &findings);
+  Append(std::move(boards.losses), &findings);
   Append(StallFindings(evidence, {others, stalls.end()}, 1), &findings);
   return findings;
 }

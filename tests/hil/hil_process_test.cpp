@@ -162,7 +162,7 @@ TEST_F(HilProcessTest, IsAnArmThatABoardBringsUpAndMoves) {
 
   const std::vector<ProcessExit> exits = group_.StopAll(kPatience);
   ASSERT_EQ(exits.size(), 1u);
-  EXPECT_TRUE(exits[0].Succeeded()) << exits[0].Describe();
+  EXPECT_EQ(exits[0].Code(), kExitInterrupted) << exits[0].Describe();
 
   const nlohmann::json report = Report();
   EXPECT_EQ(report["end"], "stopped");
@@ -227,7 +227,7 @@ TEST_F(HilProcessTest, StandsReadyBeforeTheGivenEpoch) {
   ASSERT_TRUE(Board().UntilHeard()) << Said("hil");
   const std::vector<ProcessExit> exits = group_.StopAll(kPatience);
   ASSERT_EQ(exits.size(), 1u);
-  EXPECT_TRUE(exits[0].Succeeded()) << exits[0].Describe();
+  EXPECT_EQ(exits[0].Code(), kExitInterrupted) << exits[0].Describe();
   const nlohmann::json report = Report();
   EXPECT_EQ(report["epoch_ns"], epoch_ns);
   EXPECT_EQ(report["seconds"], 0.0);

@@ -200,6 +200,18 @@ TEST_F(ProcessGroupTest, StopAllKillsAProgramThatIgnoresTheRequest) {
   EXPECT_EQ(WTERMSIG(exits[0].wait_status), SIGKILL);
 }
 
+TEST_F(ProcessGroupTest, WithoutGraceNobodyGetsAWord) {
+  ProcessGroup group;
+  ASSERT_TRUE(group.Start(
+      Shell("polite", "trap 'echo bye; exit 5' TERM; echo ready; while :; do sleep 0.01; done"), &error_))
+      << error_;
+  AwaitLog("polite");
+  const std::vector<ProcessExit> exits = group.StopAll(seconds(0));
+  ASSERT_EQ(exits.size(), 1U);
+  EXPECT_EQ(exits[0].Code(), std::nullopt);
+  EXPECT_EQ(Log("polite"), "ready\n");
+}
+
 TEST_F(ProcessGroupTest, StopAllWakesASuspendedProgram) {
   ProcessGroup group;
   ASSERT_TRUE(group.Start(Shell("suspended", "trap 'exit 6' TERM; echo $$; kill -STOP $$; exit 7"), &error_))

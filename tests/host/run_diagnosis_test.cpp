@@ -340,12 +340,12 @@ TEST_F(DiagnosisTest, LossesOfABoardAndOfTheEmulationAreTold) {
       {"timing", {{"pacing_us", {{"max", 41234.0}}}, {"latest_at_s", 8.9}, {"realtime_priority", true}}}};
   const auto findings = Result();
   ASSERT_EQ(findings.size(), 4u);
-  EXPECT_EQ(findings[1].text,
+  EXPECT_EQ(findings[3].text,
             "arm 3 in the whole run: ticks without every sample 4, ticks whose torques were not on the wire "
             "in time 2, "
             "dropped CAN frames 7, missed messages of the leader: 5");
-  EXPECT_EQ(findings[2].text, "the emulation (armada-hil) was 41.2 ms late at 8.900 s");
-  EXPECT_EQ(findings[3].kind, "priority");
+  EXPECT_EQ(findings[1].text, "the emulation (armada-hil) was 41.2 ms late at 8.900 s");
+  EXPECT_EQ(findings[2].kind, "priority");
 }
 
 TEST_F(DiagnosisTest, ALeaderThatWasSilentIsNamed) {
