@@ -15,7 +15,7 @@ What a batch is known to hide, as other code comes before a source's own: unused
 a source, bugprone-forward-declaration-namespace and bugprone-argument-comment where another source declares the same name,
 what stands under a macro that another source defines or undefines, using-declarations of the global namespace or of
 several names, and faults in a source that all others include (cmake/headers.cpp). With --alone there are no batches, and
-nothing is hidden but the last; it takes ten times as long.
+nothing is hidden but the last.
 
 A source that passes leaves an empty file in CACHE_DIR named after everything the verdict depends on: this script, its
 compile command, the .clang-tidy files of its folders, clang-tidy's version and the contents of every file the compiler read

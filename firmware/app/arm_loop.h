@@ -35,7 +35,7 @@ class ArmLoop {
   /// Emulation only: brings the drives up until the epoch. False when one of them is not in torque mode by
   /// then, or on `*stop`.
   bool BringUp(const volatile std::sig_atomic_t* stop);
-  /// Runs ticks until `end_ns` or `*stop`, then disables the drives.
+  /// Runs ticks until `end_ns` or `*stop`, then disables the drives. False when it was stopped.
   bool Run(int64_t end_ns, const volatile std::sig_atomic_t* stop);
 
   const LoopReport& report() const { return report_; }

@@ -1,6 +1,7 @@
 #include "host/run/watched_program.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <sstream>
 
@@ -27,6 +28,13 @@ bool IsFrozen(const std::string& proc) {
   return false;
 }
 
+// In the order of Doing.
+constexpr const char* TextOf(Doing doing) {
+  constexpr std::array kTexts = {"at work or waiting for a processor", "asleep", "stopped by a signal",
+                                 "frozen, or waiting for a disk", "dead"};
+  return kTexts[static_cast<size_t>(doing)];
+}
+
 }  // namespace
 
 Doing DoingOf(pid_t pid) {
@@ -50,25 +58,7 @@ Doing DoingOf(pid_t pid) {
 }
 
 std::string Describe(const std::string& program, pid_t pid) {
-  const char* what = "";
-  switch (DoingOf(pid)) {
-    case Doing::kWork:
-      what = "at work or waiting for a processor";
-      break;
-    case Doing::kAsleep:
-      what = "asleep";
-      break;
-    case Doing::kStopped:
-      what = "stopped by a signal";
-      break;
-    case Doing::kFrozen:
-      what = "frozen, or waiting for a disk";
-      break;
-    case Doing::kDead:
-      what = "dead";
-      break;
-  }
-  return program + " (pid " + std::to_string(pid) + ", " + what + ")";
+  return program + " (pid " + std::to_string(pid) + ", " + TextOf(DoingOf(pid)) + ")";
 }
 
 int64_t Patience::Look(pid_t pid, int64_t now_ns) {

@@ -82,7 +82,7 @@ ends_with() { tail -n 2 output | grep -qE "$1"; }
 given '' 0 0
 when dance
 check 'an unknown command is a usage error' test "$code" = 2
-check 'and its message names what there is' says "unknown command 'dance'; there are: build, campaign, demo, fuzz, hil, test, help"
+check 'and its message names what there is' says "unknown command 'dance'; there are: build, campaign, demo, fuzz, hil, lint, test, help"
 when test -R
 check '-R without a pattern is a usage error' test "$code" = 2
 when build now

@@ -135,7 +135,7 @@ stops_early armada-leader epoch "$scenario" --seconds 60 --state "$work/state"
 
 # Where there are no namespaces, an unpaced run says what it hears.
 if unshare -r true 2>/dev/null; then
-  expect '[01]' 'note: .*: what others send on udpm://[0-9.:]+.* is heard by this run' \
+  expect '0 1' 'note: .*: what others send on udpm://[0-9.:]+.* is heard by this run' \
     unshare -r sh -c 'echo 0 >/proc/sys/user/max_user_namespaces; echo 0 >/proc/sys/user/max_net_namespaces; exec "$@"' sh \
     "$armada" run "$scenario" --time stepped --pace 0 --seconds 0.5 --set window_start_s=0.1 --out "$work/unpaced"
 else
